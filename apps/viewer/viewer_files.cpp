@@ -217,8 +217,8 @@ void Viewer::store_window(const PresentFrame& frame) {
     if (wanted_.window.empty()) return;
     const std::filesystem::path path = std::exchange(wanted_.window, {});
     if (is_high_range())
-        return screen_.tell_error("store",
-                                  "a window of high range is no picture for files; --range standard makes one");
+        return screen_.tell_error(
+            "store", "a window of high range cannot be stored as a picture; --range standard makes one that can");
     if (!presenter_->can_copy())
         return screen_.tell_error("store", "the window's pictures cannot be read on this device");
     const darkroom::ImageRef image{.image = frame.image,

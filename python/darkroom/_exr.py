@@ -134,7 +134,7 @@ def read(path):
     reader = _Reader(path)
     magic, flags = reader.unpack("ii")
     if magic != 20000630:
-        reader.refuse("is no OpenEXR file")
+        reader.refuse("is not an OpenEXR file")
     is_multi_part = bool(flags & 0x1000)
     if flags & 0xA00:
         reader.refuse("tiles or deep data: allowed are scan lines")

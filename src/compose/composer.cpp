@@ -392,7 +392,8 @@ Result<> Composer::set(Handle handle, const EffectInfo& info, const void* parame
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;
-    if (entry.info != &info) return user_error(fmt::format("{} is no {}", entry.desc.name, info.name));
+    if (entry.info != &info)
+        return user_error(fmt::format("{}: is not an entry of the effect {}", entry.desc.name, info.name));
     const std::span words(static_cast<const std::uint32_t*>(parameters), entry.base.size());
     if (auto ok = check_values(entry, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin());

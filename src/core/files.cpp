@@ -50,13 +50,13 @@ Result<> check_regular(FileKind kind) {
         case FileKind::Folder:
             return user_error("is a folder, a file is needed");
         case FileKind::Pipe:
-            return user_error("is no regular file but a pipe");
+            return user_error("is a pipe, a regular file is needed");
         case FileKind::Socket:
-            return user_error("is no regular file but a socket");
+            return user_error("is a socket, a regular file is needed");
         case FileKind::Device:
             break;
     }
-    return user_error("is no regular file but a device");
+    return user_error("is a device, a regular file is needed");
 }
 
 /// Asked before it is opened, since some devices act when they are, and behind it, since a name may have been given to
@@ -186,7 +186,7 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
     const fs::file_status status = fs::status(target, code);
     if (fs::is_directory(status)) return user_error(fmt::format("{}: is a folder, a file is needed", target.string()));
     if (fs::exists(status) && !fs::is_regular_file(status))
-        return user_error(fmt::format("{}: is no regular file and cannot be replaced", target.string()));
+        return user_error(fmt::format("{}: is not a regular file and cannot be replaced", target.string()));
     // Replacing a link would cut it; what it points to is what the user means, be it there or not.
     fs::path real = target;
     constexpr int most_links = 40;  // as the system follows

@@ -139,7 +139,7 @@ class FileReader {
   private:
     Result<> read() {
         line_ = 1;
-        if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; the file is no text");
+        if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; allowed is text");
         auto code = expand_code(text_, line_);
         if (!code) return failure(std::move(code));
         split_lines(out_.keep(*code));

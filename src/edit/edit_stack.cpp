@@ -124,7 +124,7 @@ Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view befo
         return entry_names(look)[static_cast<std::size_t>(there - look.entries.data())];
     }
     if (entry.effect->flat.is_of_ui)
-        return user_error(fmt::format("{}: the interface has it already", entry.effect->name));
+        return user_error(fmt::format("{}: belongs to the interface, which has one already", entry.effect->name));
     entry.id = made_id;
     if (before.empty()) {
         if (look.is_flat) become_stack(look);

@@ -26,7 +26,7 @@ Result<LookTarget> target_of(Look& look, std::string_view entry, std::string_vie
 Result<> set_words(Look& look, LookTarget target, Words words, const std::string& shown) {
     const ParamInfo& row = *target.row;
     LookEntry& entry = *target.entry;
-    if (row.kind == Kind::Resource) return user_error(fmt::format("{}: it is set by a file's name", shown));
+    if (row.kind == Kind::Resource) return user_error(fmt::format("{}: takes the name of a file", shown));
     if (Result<> done = check_words(row, words, shown); !done) return done;
     std::ranges::copy(words, entry.words.begin() + row.word);
     if (const std::string conflict = conflict_of(entry); !conflict.empty()) return user_error(conflict);
@@ -41,7 +41,7 @@ Result<> set_value(Look& look, std::string_view entry, std::string_view paramete
     if (!target) return failure(target.error());
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(parameter));
     if (target->row == nullptr || target->is_state)
-        return user_error(fmt::format("{}: it is no parameter of the effect", shown));
+        return user_error(fmt::format("{}: the effect has no such parameter", shown));
     return set_words(look, *target, words, shown);
 }
 
@@ -50,7 +50,7 @@ Result<> reset_value(Look& look, std::string_view entry, std::string_view parame
     if (!target) return failure(target.error());
     if (target->row == nullptr || target->is_state)
         return user_error(
-            fmt::format("{}.{}: it is no parameter of the effect", printable(entry), printable(parameter)));
+            fmt::format("{}.{}: the effect has no such parameter", printable(entry), printable(parameter)));
     const ParamInfo& row = *target->row;
     if (row.kind == Kind::Resource) return set_file(look, entry, parameter, {}, {});
     return set_value(look, entry, parameter, target->entry->effect->parameters.defaults.subspan(row.word, row.words));
@@ -104,7 +104,7 @@ Result<> set_file(Look& look, std::string_view entry, std::string_view parameter
     if (!target) return failure(target.error());
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(parameter));
     if (target->row == nullptr || target->is_state || target->row->kind != Kind::Resource)
-        return user_error(fmt::format("{}: it takes no file", shown));
+        return user_error(fmt::format("{}: takes no file", shown));
     Result<> done = ResourceFiles(options.folder, options).put(*target->entry, *target->row, file);
     if (!done) return user_error(fmt::format("{}: {}", shown, done.error().text));
     if (target->row->is_amount && look.is_flat && !target->entry->is_of_ui)

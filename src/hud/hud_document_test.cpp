@@ -125,7 +125,7 @@ TEST_F(HudDocuments, UnknownNamesAreAnErrorUntilTheyAreSet) {
     const auto document = load();
     document->set("heath", 5.0);
     EXPECT_EQ(document->picture(10, 10), nullptr);
-    EXPECT_EQ(document->error(), at("2: {{health}}: nothing has this name, did you mean 'heath'?"));
+    EXPECT_EQ(document->error(), at("2: {{health}}: no value has this name, did you mean 'heath'?"));
     document->set("health", 5.0);
     EXPECT_NE(document->picture(10, 10), nullptr);
     EXPECT_EQ(document->error(), "");

@@ -133,7 +133,7 @@ class Checker {
     void skip_past(std::string_view end) {
         const std::size_t found = text_.find(end, at_);
         if (found == std::string_view::npos)
-            refuse(fmt::format("something ends without '{}'", end));
+            refuse(fmt::format("the end '{}' is missing", end));
         else
             at_ = found + end.size();
     }
@@ -148,7 +148,7 @@ class Checker {
             return;
         }
         if (rest().starts_with("<!")) {
-            refuse("a document type or an entity: a document stands by itself, without");
+            refuse("a document type or an entity: neither is allowed");
         } else if (rest().starts_with("<?")) {
             read_declaration();
         } else if (rest().starts_with("</")) {
@@ -406,7 +406,7 @@ Result<std::string> SvgTemplate::fill(const HudValues& values) const {
         if (found == values.end()) {
             std::vector<std::string> names;
             for (const auto& [name, value] : values) names.push_back(name);
-            return user_error(fmt::format("{}: {{{{{}}}}}: nothing has this name{}", line_of(document_, binding.begin),
+            return user_error(fmt::format("{}: {{{{{}}}}}: no value has this name{}", line_of(document_, binding.begin),
                                           binding.name, suggestion(binding.name, names)));
         }
         // In a style or an attribute it may still be a word of CSS that refers, which check_svg() refuses there.

@@ -68,7 +68,7 @@ TEST(HudText, RefusesReferencesBehindEntitiesAndEscapes) {
 
 TEST(HudText, RefusesEntitiesAndTooManyElements) {
     EXPECT_EQ(checked("<!DOCTYPE svg [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]><svg>&b;</svg>"),
-              "1: a document type or an entity: a document stands by itself, without");
+              "1: a document type or an entity: neither is allowed");
     EXPECT_EQ(checked("<svg><g/><g/></svg>", 3), "");
     EXPECT_EQ(checked("<svg><g/>\n<g/></svg>", 2), "2: more than 2 elements");
 }
@@ -114,7 +114,7 @@ TEST(HudText, ValuesAreTextAndNeverTags) {
 
 TEST(HudText, NamesTheLineOfABindingThatCannotBeFilled) {
     EXPECT_EQ(filled("<svg>\n\n{{helth}}</svg>", {{"health", 1.0}}),
-              "3: {{helth}}: nothing has this name, did you mean 'health'?");
+              "3: {{helth}}: no value has this name, did you mean 'health'?");
     EXPECT_EQ(filled("<svg>\n{{a b}}</svg>", {}), "2: {{a b}}: allowed is a name of letters, digits, '_', '-' and '.'");
     EXPECT_EQ(filled("<svg>\n{{a\n}}</svg>", {}), "2: '{{' without '}}' on its line");
 }

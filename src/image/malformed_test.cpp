@@ -118,8 +118,9 @@ TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
     put(file("a.exr"), "[bloom]\nintensity = 1\n");
     const auto text = read_frame(file("a.exr"));
     ASSERT_FALSE(text);
-    EXPECT_EQ(text.error().text, file("a.exr").string() +
-                                     ": is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
+    EXPECT_EQ(
+        text.error().text,
+        file("a.exr").string() + ": is not a picture of a known format (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
     EXPECT_FALSE(read_frame(folder_));
     EXPECT_FALSE(read_frame(file("missing.exr")));
 }

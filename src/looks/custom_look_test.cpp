@@ -183,7 +183,7 @@ TEST_F(CustomLook, APlaceIsWhereTheEffectIsMeantFor) {
     EXPECT_EQ(names_with("scene_linear", stack).front(), "tint");
     const Result<> nowhere = place_entry(stack, entry_of_text(tint));
     ASSERT_FALSE(nowhere);
-    EXPECT_TRUE(nowhere.error().text.ends_with("tint accepts display_linear, which the picture of  is nowhere"))
+    EXPECT_TRUE(nowhere.error().text.ends_with("tint accepts display_linear, but no place of  has such a picture"))
         << nowhere.error().text;
 }
 

@@ -118,7 +118,7 @@ TEST_F(LookModulation, StacksAreLayeredByTheNamesOfTheirEntries) {
     EXPECT_FLOAT_EQ(value(*look, "grayscale", "amount", {.weights = {{"grey", 0.5f}}}), 0.75f);
     EXPECT_EQ(value(*look, "tonemap", "enabled", {.weights = {{"grey", 0.6f}}}), 0) << "that look has none";
     EXPECT_EQ(error(stack + "[[layer]]\nname = \"other\"\nlook = \"other.toml\"\n"),
-              "a.toml:8:8: look = \"other.toml\": its entry 'night' (exposure) is none of this look, which has "
+              "a.toml:8:8: look = \"other.toml\": its entry 'night' (exposure) is not in this look, which has "
               "grayscale, tonemap");
 }
 
@@ -193,7 +193,7 @@ TEST_F(LookModulation, SlipsAreToldWithTheirPlaces) {
               "a.toml:4:12: distance: near = 3 and far = 3: allowed is near < far");
     EXPECT_NE(error(layer + "look = \"none.toml\"\n").find("a.toml:3:8: look = \"none.toml\": "), std::string::npos);
     // A look that layers itself is read once, without its layers.
-    EXPECT_TRUE(read_look(folder_ / "self.toml")) << "it is no other look: a slip";
+    EXPECT_TRUE(read_look(folder_ / "self.toml")) << "a look cannot be its own layer: a slip";
     std::vector<std::string> warnings;
     ASSERT_TRUE(read(flat + pulse + "envelop = \"linear\"\nduration = 0\n", &warnings));
     ASSERT_EQ(warnings.size(), 2u);

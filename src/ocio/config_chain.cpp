@@ -22,7 +22,9 @@ class ConfigChain final : public ColorChain {
         : processor_(config->getProcessor(transform)) {}
 
     void apply(std::span<std::array<float, 3>> colors) const override { run(processor_, colors); }
-    Result<ColorTable> sampled() const override { return user_error("a space of a configuration is no table"); }
+    Result<ColorTable> sampled() const override {
+        return user_error("a color space of a configuration cannot be written as a table");
+    }
 
   private:
     ocio::ConstProcessorRcPtr processor_;

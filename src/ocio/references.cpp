@@ -57,7 +57,7 @@ Found references_of(std::span<const std::byte> text) {
 Result<fs::path> file_of(const fs::path& folder, const std::string& name) {
     const fs::path path(name);
     const auto refuse = [](const char* what) { return user_error(what); };
-    if (name.empty()) return refuse("is no name of a file");
+    if (name.empty()) return refuse("is not a file's name");
     // These it would take for variables of the environment.
     if (name.find_first_of("$%") != std::string::npos) return refuse("allowed is a name without $ and %");
     if (std::ranges::any_of(path, [](const fs::path& part) { return part == ".."; }))
@@ -117,7 +117,8 @@ class Walk {
         Result<fs::path> file = file_of(folder_, name);
         if (!file) return failure(std::move(file));
         *file = file->lexically_normal();
-        if (std::ranges::find(open_, *file) != open_.end()) return user_error("names a table that names this one");
+        if (std::ranges::find(open_, *file) != open_.end())
+            return user_error("refers to a table that refers back to this one");
         return total(*file);
     }
 

@@ -225,7 +225,7 @@ Result<std::vector<std::byte>> encode(const EncodeDesc& desc) {
     OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(format_of(desc.file));
     if (!output) return error("OpenImageIO was built without it");
-    if (!output->set_ioproxy(&memory)) return error("not into memory");
+    if (!output->set_ioproxy(&memory)) return error("OpenImageIO cannot write it to memory");
     if (!output->open(fmt::format("memory.{}", format_of(desc.file)), spec)) return error(output->geterror());
     if (!output->write_image(type_of(desc.kind), desc.samples)) return error(output->geterror());
     if (!output->close()) return error(output->geterror());

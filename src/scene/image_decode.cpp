@@ -33,7 +33,7 @@ class OpenedImage {
         auto opened = open_source(bytes, 1);
         if (!opened) return failure(std::move(opened));
         const FilePart& part = opened->source->parts().front();
-        if (part.channels.empty()) return user_error("is no flat picture");
+        if (part.channels.empty()) return user_error("is not a flat picture");
         if (part.width > most_texture_side || part.height > most_texture_side)
             return user_error(fmt::format("the picture is {}x{}, [1, {}] a side is allowed", part.width, part.height,
                                           most_texture_side));

@@ -208,7 +208,7 @@ Result<> Run::toggle(Words arguments) {
     const auto number = parse_number(state_.text(*variable));
     if (!number)
         return user_error(
-            fmt::format("{} is no number: name the values that it toggles between", printable(arguments[0])));
+            fmt::format("{} is not a number: name the values that it toggles between", printable(arguments[0])));
     return write(arguments[0], *variable, *number == 0 ? "1" : "0");
 }
 

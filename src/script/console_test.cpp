@@ -424,7 +424,7 @@ TEST(ConsoleExec, ReadsFilesOfItsFolderAlone) {
         EXPECT_EQ(bed.console->get("contrast"), "1.4");
     }
     ASSERT_EQ(::mkfifo((folder.path / "inner" / "pipe").c_str(), 0600), 0);
-    EXPECT_EQ(bed.run("exec pipe"), (folder.path / "inner" / "pipe: is no regular file but a pipe").string())
+    EXPECT_EQ(bed.run("exec pipe"), (folder.path / "inner" / "pipe: is a pipe, a regular file is needed").string())
         << "a pipe would be waited for";
     EXPECT_EQ(bed.console->execute("exec \"\""), 1u);
     EXPECT_EQ(bed.console->execute("exec a.cfg", {.allows_files = false}), 1u);

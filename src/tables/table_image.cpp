@@ -27,7 +27,7 @@ Result<std::uint32_t> table_image_edge(std::uint32_t width, std::uint32_t height
     if (is_edge(high) && wide == high * high) return height;
     if (is_edge(wide) && high == wide * wide) return width;
     return user_error(
-        fmt::format("a picture of {}x{} is no table: a strip is n*n x n or n x n*n, n in [{}, {}], a HaldCLUT is a "
+        fmt::format("a picture of {}x{} is not a table: a strip is n*n x n or n x n*n, n in [{}, {}], a HaldCLUT is a "
                     "square of 8, 27, 64 ... 4096",
                     width, height, min_table_size, max_cube_size));
 }

@@ -100,10 +100,10 @@ TEST_F(CliBake, RefusesWhatItCannotBake) {
     expect_refused({"bake", path("grey.toml"), "-o", path("out.dkb"), "--profile", "cpu"}, 1,
                    "--profile cpu: allowed is gpu or software");
     expect_refused({"bake", path("none.toml"), "-o", path("out.dkb"), "--profile", "gpu"}, 1, "none.toml");
-    expect_refused(bake({"--depth-format", "D32"}), 1, "--depth-format D32: no format of images has this name");
+    expect_refused(bake({"--depth-format", "D32"}), 1, "--depth-format D32: not a format of images");
     expect_refused(bake({"--target-format", ":storage"}), 1, "--target-format :storage");
     expect_refused(bake({"--output-space", "pq", "--target-format", "R32G32B32A32_SFLOAT"}), 1,
-                   "--output-space pq: not of R32G32B32A32_SFLOAT");
+                   "--output-space pq: a target of R32G32B32A32_SFLOAT cannot hold it");
     expect_refused(bake({"--size", "0x4"}), 1, "--size 0x4");
     expect_refused(bake({"--size", "99999x4"}), 1, "grey.toml: size 99999x4: this device allows 1x1 to 16384x16384");
 }

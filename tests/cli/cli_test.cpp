@@ -104,7 +104,8 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
     EXPECT_EQ(run({"develop", path("frame.exr"), "-o", path("{name} of {name}.png")}).code, 0);
     EXPECT_TRUE(fs::exists(path("frame of frame.png")));
     expect_refused({"develop", path("shot.0007.exr"), path("frame.exr"), "-o", path("one.png")}, 1, "2 inputs need");
-    expect_refused({"develop", path("frame.exr"), path("frame.exr"), "-o", path("{name}.png")}, 1, "would be made of");
+    expect_refused({"develop", path("frame.exr"), path("frame.exr"), "-o", path("{name}.png")}, 1,
+                   "two inputs would be written to it");
 }
 
 TEST_F(Cli, WrongRequestsAreOneLineAndOne) {

@@ -75,9 +75,10 @@ TEST_F(CliColor, InputSpaceSaysWhatTheNumbersMean) {
     EXPECT_NEAR(color_after({"--input-space", "srgb"})[0], 0.0508761, 1e-4);
     for (const char* const space : {"acescg", "aces2065-1", "rec2020", "p3", "rec709"})
         EXPECT_NEAR(color_after({"--input-space", space})[1], grey, 1e-3) << space << ": grey is grey";
-    expect_error({"--input-space", "p33"},
-                 "--input-space: 'p33' is no known color space, did you mean 'p3'? allowed is srgb, rec709, rec2020, "
-                 "p3, acescg or aces2065-1");
+    expect_error(
+        {"--input-space", "p33"},
+        "--input-space: 'p33' is not a known color space, did you mean 'p3'? allowed is srgb, rec709, rec2020, "
+        "p3, acescg or aces2065-1");
 }
 
 TEST_F(CliColor, SpacesOfAConfigurationAreRead) {
@@ -131,10 +132,10 @@ TEST_F(CliColor, PicturesAreWrittenForAnotherSpaceAndComeBack) {
     expect_light(run({"develop", path("frame.exr"), "-o", path("t.png"), "--output-space", "pq", "--tonemap-curve",
                       "bt2390", "--tonemap-peak-nits", "1000", "--exposure", "4", "--no-bloom"}),
                  "t.png", 4, 3e-3F);
-    expect_error(
-        {"--output-space", "pq2"},
-        "--output-space: 'pq2' is no color space of pictures, did you mean 'pq'? allowed is srgb, p3, rec2020, "
-        "pq or hlg");
+    expect_error({"--output-space", "pq2"},
+                 "--output-space: 'pq2' is not a color space that pictures can be written in, did you mean 'pq'? "
+                 "allowed is srgb, p3, rec2020, "
+                 "pq or hlg");
     expect_error({"--output-peak", "500"}, "--output-peak: needs --output-space pq or hlg");
     expect_error({"--output-space", "p3", "--output-peak", "500"},
                  "--output-peak: works for pq and hlg, and not for p3");
@@ -146,9 +147,10 @@ TEST_F(CliColor, CodesOfAnotherDisplayAreNotWrittenAsThoughTheyWereOfSrgb) {
     for (const char* const transfer : {"pq", "hlg", "scrgb", "p3"}) {
         const Outcome refused = run({"develop", frame, "-o", out, "--encode-transfer", transfer});
         EXPECT_EQ(refused.code, 1) << transfer;
-        EXPECT_EQ(refused.err,
-                  "darkroom: encode: its code values are not sRGB's, which the file would say they are: allowed is "
-                  "--output-space srgb, p3, pq, hlg, which makes them, too, and says so\n");
+        EXPECT_EQ(
+            refused.err,
+            "darkroom: encode: makes code values other than sRGB, and the file would be marked as sRGB: allowed is "
+            "--output-space srgb, p3, pq, hlg, which encodes the picture and marks the file\n");
         EXPECT_FALSE(std::filesystem::exists(out));
     }
     for (const std::vector<std::string>& flags :
@@ -211,11 +213,11 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
                  config + ": has no display 'scren', did you mean 'screen'? there are screen");
     expect_error({"--ocio", config, "--display", "screen", "--view", "x"},
                  config + ": has no view 'x': there are root and half");
-    expect_error({"--display", "screen"}, "--display: needs --ocio FILE, whose display it is");
-    expect_error({"--ocio", config}, "--ocio: is for --input-space and --display, none of which is given");
-    expect_error({"--view", "root"}, "--view: needs --display NAME, whose view it is");
+    expect_error({"--display", "screen"}, "--display: needs --ocio FILE, which defines it");
+    expect_error({"--ocio", config}, "--ocio: needs --input-space or --display, which use it");
+    expect_error({"--view", "root"}, "--view: needs --display NAME");
     expect_error({"--ocio", config, "--display", "screen", "--bits", "half"},
-                 path("none.png") + ": half samples hold light, and no view of a display; .png .jpg .tif hold one");
+                 path("none.png") + ": half samples hold light, not a view of a display; .png .jpg .tif hold one");
 }
 
 TEST_F(CliColor, AnotherRatioIsFittedInUnlessItIsSaid) {
@@ -228,9 +230,10 @@ TEST_F(CliColor, AnotherRatioIsFittedInUnlessItIsSaid) {
     EXPECT_EQ(size_of("64x64:fit"), "64x36");
     EXPECT_EQ(size_of("64x64:fill"), "64x64");
     EXPECT_EQ(size_of("64x64:stretch"), "64x64");
-    expect_error({"--size", "64x64:stretsh"},
-                 "--size 64x64:stretsh: 'stretsh' is no way to resize, did you mean 'stretch'? allowed is fit, fill or "
-                 "stretch");
+    expect_error(
+        {"--size", "64x64:stretsh"},
+        "--size 64x64:stretsh: 'stretsh' is not a way to resize, did you mean 'stretch'? allowed is fit, fill or "
+        "stretch");
 }
 
 // A path tracer's picture is as dark in its corners as it should be.

@@ -136,8 +136,8 @@ TEST_F(CliCustomEffects, WhatIsWrongIsOneLine) {
     fs::create_directories(path("folder.glsl"));
     expect_refused({"plan", "--effect", path("folder.glsl")}, 1, "folder.glsl: is a folder, a file is needed");
     ASSERT_EQ(mkfifo(path("pipe.glsl").c_str(), 0600), 0);
-    expect_refused({"plan", "--effect", path("pipe.glsl")}, 1, "pipe.glsl: is no regular file");
-    expect_refused({"effects", path("pipe.glsl")}, 1, "pipe.glsl: is no regular file");
+    expect_refused({"plan", "--effect", path("pipe.glsl")}, 1, "pipe.glsl: is a pipe, a regular file is needed");
+    expect_refused({"effects", path("pipe.glsl")}, 1, "pipe.glsl: is a pipe, a regular file is needed");
     expect_file_refused(std::string(1 << 20, '\n'), "wrong.glsl: 1048576 bytes, at most 65536 are read");
     expect_file_refused("", "wrong.glsl:1: no line `// @effect NAME: SENTENCE.` before the code");
     expect_file_refused("// @effect bloom: Mine.\nbloom(",

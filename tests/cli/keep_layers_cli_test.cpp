@@ -142,10 +142,8 @@ TEST_F(CliKeepLayers, HalvesStayHalvesAndShadowsStayBehind) {
 
 TEST_F(CliKeepLayers, WhereThereIsNoPlaceTheyAreRefused) {
     const std::string frame = path("frame.exr");
-    expect_refused({"develop", frame, "--keep-layers", "-o", path("a.png")}, 1,
-                   "a.png has no place for them, .exr has");
-    expect_refused({"develop", frame, "--keep-layers", "-o", "-", "--format", "y4m"}, 1,
-                   "a stream has no place for them");
+    expect_refused({"develop", frame, "--keep-layers", "-o", path("a.png")}, 1, "a.png holds no layers; .exr does");
+    expect_refused({"develop", frame, "--keep-layers", "-o", "-", "--format", "y4m"}, 1, "a stream holds no layers");
     expect_refused({"develop", frame, "--no-ssao", "--keep-layers", "--size", "6x4", "-o", path("a.exr")}, 1,
                    "the layers of the frame are 12x8, the picture 6x4");
     // A layer cannot have the name of the picture's own channels.

@@ -157,7 +157,7 @@ TEST_F(CliLut, ConvertedTablesAreTheSame) {
 TEST_F(CliLut, WhatCannotBeDoneIsOneLine) {
     expect_refused({"lut", "convert", path("bad.cube"), "-o", path("out.cube")}, 1,
                    "bad.cube:2: the file ends after 1");
-    expect_refused({"lut", "convert", path("frame.exr"), "-o", path("out.cube")}, 1, "64x48 is no table");
+    expect_refused({"lut", "convert", path("frame.exr"), "-o", path("out.cube")}, 1, "64x48 is not a table");
     expect_refused({"lut", "convert", path("half.cube"), "-o", path("out.txt")}, 1, ".cube");
     expect_refused({"lut", "info", path("bad.cube")}, 1, "bad.cube:2: ");
     expect_refused({"lut", "inf"}, 1, "did you mean 'info'?");
@@ -165,7 +165,8 @@ TEST_F(CliLut, WhatCannotBeDoneIsOneLine) {
     expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("bad.cube")}, 1, "bad.cube:2: ");
     expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("none.cube")}, 1, "none.cube");
     write("blur.toml", "[[stack]]\neffect = \"gaussian_blur\"\n");
-    expect_refused({"lut", "export", path("blur.toml"), "-o", path("out.cube")}, 1, "no effect in it is a function");
+    expect_refused({"lut", "export", path("blur.toml"), "-o", path("out.cube")}, 1,
+                   "none of its effects maps colour to colour alone");
 }
 
 }  // namespace

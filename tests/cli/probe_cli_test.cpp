@@ -157,7 +157,7 @@ TEST_F(CliProbe, WrongPlacesAreRefused) {
     refused("48,0", "--at 48,0: the picture is 48x30, allowed is 0,0 to 47,29");
     refused("-1,0", "--at -1,0: the picture is 48x30");
     for (const char* const wrong : {"5", "5,", ",5", "5,6,7", "a,b", "1.5,2", "99999999999,0"})
-        refused(wrong, fmt::format("--at: '{}' is no pixel, allowed is X,Y: two whole numbers", wrong));
+        refused(wrong, fmt::format("--at: '{}' is not a pixel, allowed is X,Y: two whole numbers", wrong));
     expect_refused({"probe", path("frame.exr")}, 1, "--at");
     expect_refused({"probe", path("none.exr"), "--at", "0,0"}, 1, "none.exr");
     std::vector<std::string> many{"probe", path("frame.exr"), "--look", path("broken.toml")};

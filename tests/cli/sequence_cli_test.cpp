@@ -229,8 +229,8 @@ TEST_F(CliSequence, TellsOnceOfTheViewThatItAssumes) {
     const Outcome outcome = develop("v", {"--fog-density", "0.1"});
     EXPECT_EQ(outcome.code, 0);
     EXPECT_EQ(outcome.err, "darkroom: warning: " + path(in(1)) +
-                               ": has depth and no projection: a vertical field of view of 45 degrees is assumed, "
-                               "--fov or --camera says another\n");
+                               ": has depth and no projection: a vertical field of view of 45 degrees is assumed; "
+                               "--fov or --camera sets another\n");
     EXPECT_EQ(develop("v").err, "") << "nothing asks for depth";
 }
 
@@ -317,7 +317,7 @@ TEST_F(CliSequence, FramesASecondMakeWhatMovesMove) {
     EXPECT_EQ(content(path(out("k", 1))), content(path(out("l", 1)))) << "frame 1 is at half a second";
     const Outcome both = develop("i", {"--fps", "24", "--time", "1"});
     EXPECT_EQ(both.code, 1);
-    EXPECT_EQ(both.err, "darkroom: --time: --fps says the time of every frame, leave out one of them\n");
+    EXPECT_EQ(both.err, "darkroom: --time: --fps sets the time of every frame; give one of the two\n");
 }
 
 TEST_F(CliSequence, FilesAreCodedAsAsked) {

@@ -169,7 +169,7 @@ TEST_F(CliStream, WhatCannotBeStreamedIsRefused) {
     refused({"-o", "-", "--format", "avi"}, "--format avi: allowed is y4m, rgb24, rgba64le");
     refused({"-o", path("a.png"), "--format", "y4m"}, "--format y4m: works for -o -, not for files");
     refused({"-o", "-", "--format", "y4m", "--bits", "16"}, "--bits: works for files");
-    refused({"-o", "-", "--format", "y4m", "--alpha"}, "--alpha: --format y4m has none");
+    refused({"-o", "-", "--format", "y4m", "--alpha"}, "--alpha: --format y4m holds no alpha");
     refused({"-o", "-", "--format", "y4m", "--skip-existing"}, "--skip-existing: a stream has no gaps");
     refused({"-o", "-", "--format", "y4m", "--keep-going"}, "--keep-going: a stream has no gaps");
     FrameFile larger;

@@ -298,7 +298,8 @@ TEST_F(CliUi, ATeleportSetsTheHeadingWithoutAPush) {
 TEST_F(CliUi, IsNotOverwritten) {
     const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path("hud.png"), "-o", path("hud.png")});
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_NE(outcome.err.find("hud.png: is an input, and would be overwritten"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("hud.png: is also an input, and would be overwritten"), std::string::npos)
+        << outcome.err;
 }
 
 // Where the look has moved it, inertia comes on top.

@@ -274,11 +274,10 @@ TEST_F(CliRenderPixels, ALensIsSampledAndNotBlurredAgain) {
     EXPECT_NE(twice.told.find("--aperture: the lens blurs, depth_of_field is off"), std::string::npos) << twice.told;
     EXPECT_EQ(picture("twice.png"), lens);
     for (const auto& [flags, text] :
-         {std::pair(std::vector<std::string>{"--focus", "3"}, "--focus: there is no lens, --aperture makes one"),
-          {{"--aperture", "2", "--samples", "1"}, "--samples = 1: with --aperture allowed is [2, 1024]"},
+         {std::pair(std::vector<std::string>{"--focus", "3"}, "--focus: needs --aperture, which makes a lens"),
+          {{"--aperture", "2", "--samples", "1"}, "--samples 1: with --aperture, allowed is [2, 1024]"},
           {{"--aperture", "0"}, "--aperture = 0: allowed is [0.5, 64]"},
-          {{"--aperture", "2", "--no-postprocess"},
-           "--aperture: the scene's own shaders draw the picture from one place"}}) {
+          {{"--aperture", "2", "--no-postprocess"}, "--aperture: the scene's own shaders draw no blur"}}) {
         std::vector<std::string> all{"render", path("yard.scene.toml"), "-o", path("no.png"), "--size", "96x64"};
         all.insert(all.end(), flags.begin(), flags.end());
         const Outcome refused = run(all);

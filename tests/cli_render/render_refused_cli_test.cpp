@@ -54,12 +54,13 @@ TEST_F(CliRenderRefused, DevicesAndEmptyValuesAreRefused) {
         write("sky.scene.toml", std::string(test::yard_scene) + "[environment]\nskybox = \"/dev/zero\"\n");
     const Outcome outcome = run({"render", scene, "--size", "8x8", "-o", path("sky.png")});
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.err.find("/dev/zero: is no regular file but a device (asked for by the environment)"),
+    EXPECT_NE(outcome.err.find("/dev/zero: is a device, a regular file is needed (asked for by the environment)"),
               std::string::npos)
         << outcome.err;
     expect_refused({"render", path("yard.scene.toml"), "--size=", "-o", path("x.png")}, 1,
                    "--size: one value is needed");
-    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "/dev/zero: is no regular file but a device");
+    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1,
+                   "/dev/zero: is a device, a regular file is needed");
 }
 
 TEST_F(CliRenderRefused, WrongValuesAreRefused) {

@@ -60,7 +60,8 @@ TEST_F(CliTemporal, ARenderScaleDrawsFewerLinesOfThePicture) {
     ASSERT_EQ(render({"--render-scale", "0.1", "--size", "7x3"}, "tiny.png").code, 0);
     EXPECT_EQ(picture("tiny.png").width, 7U);
     expect_render_refused({"--render-scale", "0"}, "--render-scale = 0: allowed is [0.1, 1]");
-    expect_render_refused({"--render-scale", "0.5", "--no-postprocess"}, "--render-scale: nothing is post-processed");
+    expect_render_refused({"--render-scale", "0.5", "--no-postprocess"},
+                          "--render-scale: no effect runs that could enlarge the picture");
 }
 
 TEST_F(CliTemporal, StoredFramesAreDevelopedIntoLargerPictures) {
@@ -207,7 +208,7 @@ TEST_F(CliTemporal, AJudgementThatCannotBeIsRefused) {
     write("captured/capture.json", "{\"format\": 1, \"truth\": {\"files\": \"../x.####.exr\", \"frames\": \"5\"}}");
     expect_refused(judge("captured", "captured/1x"), 1, "allowed is a name within the folder");
     write("captured/capture.json", "[]");
-    expect_refused(judge("captured", "captured/1x"), 1, "is no description of a capture");
+    expect_refused(judge("captured", "captured/1x"), 1, "is not a description of a capture");
 }
 
 }  // namespace

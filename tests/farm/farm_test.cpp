@@ -131,11 +131,12 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
     expect_farm_refuses(shot + "--frames 20-30", 1, "--frames 20-30: none of the 12 inputs has such a number");
     expect_farm_refuses(shot + "--chunk 0", 1, "--chunk = 0: allowed is [1, 100000]");
     expect_farm_refuses(shot + "--partition 'a b'", 1, "--partition a b: allowed are letters, digits and _ - . , : @");
-    expect_farm_refuses(shot + "--program $'a\\nb'", 1, "--program a\\x0Ab: one line is needed");
+    expect_farm_refuses(shot + "--program $'a\\nb'", 1, "--program a\\x0Ab: holds a line break; allowed is one line");
     expect_farm_refuses("slurm shot.0001.exr -o out/", 1,
                         "shot.0001.exr: expected a sequence, shot.%04d.exr or shot.####.exr, or a scene (.toml) or a "
                         "model (.glb, .gltf)");
-    expect_farm_refuses("slurm 'shot.####.exr[1-3]' -o out/", 1, "shot.####.exr[1-3]: --frames says which");
+    expect_farm_refuses("slurm 'shot.####.exr[1-3]' -o out/", 1,
+                        "shot.####.exr[1-3]: a farm takes no [A-B]; --frames A-B chooses frames");
     expect_farm_refuses("slurm 'shot.####.exr' -o none/", 1,
                         "none: no such folder, nothing can be written there; --mkdir makes it");
     expect_farm_refuses("slurm 'shot.####.exr' -o -", 1, "-o -: a farm writes files");
@@ -184,9 +185,10 @@ TEST_F(FarmFiles, WithoutSlurmTheMachineIsAtFault) {
     setenv("PATH", path("bin").c_str(), 1);
     const Outcome outcome = run({"farm", "slurm", path("shot.####.exr"), "-o", path("out")});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err,
-              "darkroom: sbatch: cannot be run: No such file or directory: Slurm's commands are needed, --dry-run does "
-              "without\n");
+    EXPECT_EQ(
+        outcome.err,
+        "darkroom: sbatch: cannot be run: No such file or directory: Slurm's commands are needed; --dry-run works "
+        "without them\n");
     write_program("sbatch", "echo 'sbatch: warning: hm' >&2; echo 'sbatch: error: Invalid partition name' >&2; exit 1");
     expect_farm_refuses("slurm 'shot.####.exr' -o out/ --partition x", 2, "sbatch: error: Invalid partition name");
 }
@@ -207,9 +209,10 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     write_program("squeue", "exit 0");
     const Outcome other = farm(shot + " -- --exposure 2");
     EXPECT_EQ(other.code, 1);
-    EXPECT_EQ(other.err,
-              "darkroom: out/shot.farm: its pictures are of other arguments (shot.####.exr -o out/); remove it, or "
-              "write elsewhere with -o\n");
+    EXPECT_EQ(
+        other.err,
+        "darkroom: out/shot.farm: its pictures were made with other arguments (shot.####.exr -o out/); remove it, or "
+        "write elsewhere with -o\n");
     for (const int number : {1, 2, 3, 4, 5, 7, 8, 9, 10, 11}) put_picture(number);
     write("out/shot.0009.png", "");
     const Outcome second = farm(shot);
@@ -362,7 +365,7 @@ TEST_F(FarmFiles, AFileThatIsNoRecordIsAWarning) {
     const Outcome outcome = farm("status .");
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.err, "darkroom: shot.farm/job.json: is not JSON\n");
-    expect_farm_refuses("status out", 1, "out: there is no NAME.farm in it, nothing was submitted");
+    expect_farm_refuses("status out", 1, "out: holds no folder NAME.farm, so nothing was submitted from it");
     expect_farm_refuses("status none.farm", 1, "none.farm: cannot be listed: No such file or directory");
     expect_farm_refuses("status none", 1, "none: cannot be listed: No such file or directory");
 }

@@ -50,8 +50,9 @@ class CliOpen : public test::CliFixture {
         // A task of a farm tries four times, and says so.
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), typed[1] == "task" ? 5 : 1)
             << line << ": " << outcome.err;
-        const std::string expected = std::filesystem::path(file).filename().string() + ": is no regular file but a " +
-                                     (file.find("pipe") == std::string::npos ? "device" : "pipe");
+        const std::string expected = std::filesystem::path(file).filename().string() + ": is a " +
+                                     (file.find("pipe") == std::string::npos ? "device" : "pipe") +
+                                     ", a regular file is needed";
         EXPECT_NE(outcome.err.find(expected), std::string::npos) << line << ": " << outcome.err;
     }
     void expect_refused_both(const Words& typed, const std::string& extension, int code = 1) const {

@@ -82,7 +82,7 @@ TEST_F(CliRefuse, CameraFilesThroughWhichNothingIsSeen) {
 }
 
 TEST_F(CliRefuse, FilesThatAreNoScenes) {
-    const std::string none = "is no scene: it has no table [scene], [camera], [environment], [entities]";
+    const std::string none = "is not a scene: it has no table [scene], [camera], [environment], [entities]";
     const auto expect = [&](const std::string& text, const std::string& part) {
         expect_refused({"render", write("a.toml", text), "--size", "8x8", "-o", path("out.png")}, 1, "a.toml: " + part);
     };
@@ -91,7 +91,7 @@ TEST_F(CliRefuse, FilesThatAreNoScenes) {
     expect("# nothing\n", none);
     expect("x = 1\n", none);
     expect("[[stack]]\neffect = \"encode\"\n",
-           none + ", [prefabs], nor any other of theirs; a look is what --look takes");
+           none + ", [prefabs], nor any other table of a scene; a look is what --look takes");
     expect("[post_process]\nenabled = true\n", none);
     EXPECT_EQ(run({"render", write("a.toml", "[scene]\nname = \"bare\"\n"), "--size", "8x8", "-o", path("b.png")}).code,
               0);

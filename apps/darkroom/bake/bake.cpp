@@ -56,8 +56,8 @@ Result<darkroom::ImageUse> use_of(std::string_view image, const std::string& tex
     const VkFormat format = darkroom::gpu::format_named(name);
     if (format == VK_FORMAT_UNDEFINED)
         return user_error(
-            fmt::format("{} {}: no format of images has this name; allowed are those of Vulkan without "
-                        "VK_FORMAT_, and :storage behind",
+            fmt::format("{} {}: not a format of images; allowed is the name of a VkFormat without VK_FORMAT_, "
+                        "as R16G16B16A16_SFLOAT or R8G8B8A8_UNORM:storage",
                         flag_of(image), printable(text)));
     return darkroom::ImageUse{format, is_storage ? usage | VK_IMAGE_USAGE_STORAGE_BIT : usage};
 }
@@ -70,7 +70,7 @@ Result<> set_target_color(const SpaceFlags& flags, darkroom::CompileDesc& desc) 
     const std::string_view format = darkroom::gpu::format_name(desc.target.format);
     desc.target_color = format.ends_with("SFLOAT") ? (*space)->floats : (*space)->integers;
     if (desc.target_color) return {};
-    return user_error(fmt::format("--output-space {}: not of {}", (*space)->name, format));
+    return user_error(fmt::format("--output-space {}: a target of {} cannot hold it", (*space)->name, format));
 }
 
 Result<darkroom::CompileDesc> desc_of(const Options& options) {

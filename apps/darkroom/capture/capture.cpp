@@ -279,7 +279,7 @@ Command add_capture(CommandFlags program) {
     command.add_option("--mean", options->mean, "Mean of c / (1 + max c), as a display shows it, or of light itself")
         .type_name("tone-mapped|linear")
         .capture_default();
-    options->drawn.add_to(command, default_extent, 1, "The moment");
+    options->drawn.add_to(command, default_extent, 1, "The time");
     options->device.add_to(command);
     return {command, [options] { return run(*options); }};
 }

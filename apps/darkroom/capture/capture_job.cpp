@@ -86,7 +86,7 @@ Result<CapturedTruth> read_capture(const std::filesystem::path& folder) {
     const auto refused = [&](std::string_view what) {
         return user_error(fmt::format("{}: {}", printable(file.string()), what));
     };
-    if (!json || !json->is_object()) return refused("is no description of a capture: no JSON object");
+    if (!json || !json->is_object()) return refused("is not a description of a capture: a JSON object is needed");
     const Json* const format = json->find("format");
     if (format == nullptr || !format->is_whole() || format->whole() != 1) return refused("format: allowed is 1");
     const Json* const truth = json->find("truth");

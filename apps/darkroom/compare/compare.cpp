@@ -67,8 +67,8 @@ Result<CompareRequest> request_of(const Options& options) {
          {std::pair(most.flip.has_value(), "--fail-flip"), std::pair(!options.diff.empty(), "--diff"),
           std::pair(!options.sheet.empty(), "--sheet"), std::pair(!options.html.empty(), "--html")})
         if (is_given && !has_color)
-            return user_error(
-                fmt::format("{}: is about color, which is not among --layers {}", name, printable(options.layers)));
+            return user_error(fmt::format("{}: needs the layer color, which --layers {} leaves out", name,
+                                          printable(options.layers)));
     return request;
 }
 

@@ -89,7 +89,7 @@ struct Job {
 
 darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
     return user_error(
-        fmt::format("--keep-layers: {} has no place for them, .exr has", darkroom::printable(output.string())));
+        fmt::format("--keep-layers: {} holds no layers; .exr does", darkroom::printable(output.string())));
 }
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
@@ -164,13 +164,13 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
         return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
     if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
     if (options.keeps_layers && options.frame.keeps_overscan)
-        return user_error("--overscan: --keep-layers keeps those of the display window alone");
+        return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
     if (!options.output_size.empty() && options.keeps_layers)
-        return user_error("--output-size: --keep-layers keeps those of the frame's size alone");
+        return user_error("--output-size: works without --keep-layers, which keeps layers at the frame's size");
     if (options.is_reference && options.run.has_timings)
-        return user_error("--timings: the references do not run on the device");
+        return user_error("--timings: works without --reference, which does not run on the device");
     if (options.time.is_given() && options.frames_per_second.is_given())
-        return user_error("--time: --fps says the time of every frame, leave out one of them");
+        return user_error("--time: --fps sets the time of every frame; give one of the two");
     if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
     if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
         return failure(std::move(done));

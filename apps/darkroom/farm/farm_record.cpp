@@ -142,8 +142,8 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
         if (entry->path().extension() == ".json" && entry->path().filename() != job_file) {
             out.push_back(entry->path());
             if (out.size() > most_frames)
-                return darkroom::user_error(
-                    fmt::format("{}: allowed are {} records", printable(folder.string()), most_frames));
+                return darkroom::user_error(fmt::format("{}: holds more than {} records, no more are allowed",
+                                                        printable(folder.string()), most_frames));
         }
     if (error)
         return darkroom::user_error(

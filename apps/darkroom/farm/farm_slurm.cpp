@@ -112,12 +112,13 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
     const Result<std::string> head = directives(options, chunks.size());
     if (!head) return failure(head.error());
     if (options.program.find('\n') != std::string::npos)
-        return user_error(fmt::format("--program {}: one line is needed", printable(options.program)));
+        return user_error(
+            fmt::format("--program {}: holds a line break; allowed is one line", printable(options.program)));
     std::error_code error;
     const std::string here = fs::current_path(error).string();
     const std::string program =
         options.program.empty() ? shell_quoted(fs::read_symlink("/proc/self/exe", error).string()) : options.program;
-    if (error) return darkroom::machine_error(fmt::format("the working folder is unknown: {}", error.message()));
+    if (error) return darkroom::machine_error(fmt::format("the working folder cannot be found: {}", error.message()));
     const std::string folder = shell_quoted(work.folder.string());
     return fmt::format(
         "#!/bin/bash\n{}set -e\ncd -- {}\nmkdir -p -- {}\nchunks=({})\nchunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
@@ -131,7 +132,7 @@ bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_
 Result<> check_same(const FarmWork& work, const FarmJob& last, const FarmJob& job) {
     if (!has_arguments(last, job.arguments))
         return user_error(
-            fmt::format("{}: its pictures are of other arguments ({}); remove it, or write elsewhere with -o",
+            fmt::format("{}: its pictures were made with other arguments ({}); remove it, or write elsewhere with -o",
                         printable(work.folder.string()), printable(fmt::format("{}", fmt::join(last.arguments, " ")))));
     return job.done.empty() ? Result<>() : check_inputs(work.folder, last, job.inputs);
 }
@@ -151,12 +152,13 @@ Result<std::string> submit(const fs::path& script) {
     const Result<ProcessOutcome> outcome = run_process({"sbatch", "--parsable", script.string()}, ProcessOutput::Kept);
     if (!outcome)
         return darkroom::machine_error(
-            fmt::format("{}: Slurm's commands are needed, --dry-run does without", outcome.error().text));
+            fmt::format("{}: Slurm's commands are needed; --dry-run works without them", outcome.error().text));
     if (outcome->code != 0)
         return darkroom::machine_error(outcome->errors.empty() ? fmt::format("sbatch: ended with {}", outcome->code)
                                                                : outcome->errors.back());
     std::string id = outcome->out.substr(0, outcome->out.find_first_of(";\n"));  // behind a semicolon: the cluster
-    if (!is_number(id)) return darkroom::machine_error(fmt::format("sbatch: '{}' is no job number", printable(id)));
+    if (!is_number(id))
+        return darkroom::machine_error(fmt::format("sbatch: '{}' is not a job's number", printable(id)));
     return id;
 }
 
@@ -202,8 +204,8 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
     // The records of a chunk are files of its name.
     constexpr std::size_t longest_name = 200;
     if (std::ranges::any_of(chunks, [](const std::string& name) { return name.size() > longest_name; }))
-        return user_error(
-            fmt::format("--chunk {}: its frames are too scattered for one name; a smaller one is needed", chunk));
+        return user_error(fmt::format(
+            "--chunk {}: the frames of a chunk are too scattered for a file's name; choose a smaller number", chunk));
     if (chunks.size() > most_chunks)
         return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: --chunk {} is enough", chunk,
                                       chunks.size(), most_chunks,

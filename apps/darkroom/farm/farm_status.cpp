@@ -102,7 +102,7 @@ Result<std::vector<fs::path>> folders_in(fs::path folder) {
         return darkroom::user_error(
             fmt::format("{}: cannot be listed: {}", printable(folder.string()), error.message()));
     if (out.empty())
-        return darkroom::user_error(fmt::format("{}: there is no NAME{} in it, nothing was submitted",
+        return darkroom::user_error(fmt::format("{}: holds no folder NAME{}, so nothing was submitted from it",
                                                 printable(folder.string()), farm_suffix));
     std::ranges::sort(out);
     return out;

@@ -81,7 +81,8 @@ Result<> FarmFlags::check_arguments() const {
                                       printable(more_.front()), is_scene() ? "render" : "develop"));
     if (out_ == stream_name) return user_error("-o -: a farm writes files");
     // Its end is where `develop` reads which frames are meant.
-    if (input_.ends_with(']')) return user_error(fmt::format("{}: --frames says which", printable(input_)));
+    if (input_.ends_with(']'))
+        return user_error(fmt::format("{}: a farm takes no [A-B]; --frames A-B chooses frames", printable(input_)));
     if (!is_scene() && !darkroom::has_number_pattern(input_))
         return user_error(
             fmt::format("{}: expected a sequence, shot.%04d.exr or shot.####.exr, or a scene (.toml) "
@@ -128,8 +129,8 @@ Result<FarmWork> FarmFlags::work() const {
     Result<std::vector<FarmFrame>> frames = frames_in(asked_for);
     if (!frames) return failure(std::move(frames));
     if (frames->size() > most_frames)
-        return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
-                                      frames->size(), most_frames));
+        return user_error(fmt::format("{}: {} frames, a farm takes at most {}; --frames A-B chooses some",
+                                      printable(input_), frames->size(), most_frames));
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
     const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));

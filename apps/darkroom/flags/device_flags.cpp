@@ -71,7 +71,7 @@ Result<darkroom::NewSize> parse_new_size(const std::string& text) {
     const std::string name = colon == std::string::npos ? names.front() : text.substr(colon + 1);
     const auto found = std::ranges::find(names, name);
     if (found == names.end())
-        return user_error(fmt::format("--size {}: '{}' is no way to resize{}", darkroom::printable(text),
+        return user_error(fmt::format("--size {}: '{}' is not a way to resize{}", darkroom::printable(text),
                                       darkroom::printable(name), darkroom::alternatives(name, names)));
     const Result<VkExtent2D> size = parse_size(text.substr(0, colon));
     if (!size) return failure(size.error());

@@ -25,15 +25,15 @@ void OcioFlags::add_to(CommandFlags command, bool has_view) {
 darkroom::Result<> OcioFlags::check(bool has_input_space) const {
     if (configuration.empty() || has_display() || has_input_space) return {};
     if (const auto read = darkroom::check_configuration(configuration); !read) return failure(read.error());
-    return user_error("--ocio: is for --input-space and --display, none of which is given");
+    return user_error("--ocio: needs --input-space or --display, which use it");
 }
 
 darkroom::Result<Chain> OcioFlags::view() const {
     if (display_.empty()) {
-        if (!view_.empty()) return user_error("--view: needs --display NAME, whose view it is");
+        if (!view_.empty()) return user_error("--view: needs --display NAME");
         return Chain();
     }
-    if (configuration.empty()) return user_error("--display: needs --ocio FILE, whose display it is");
+    if (configuration.empty()) return user_error("--display: needs --ocio FILE, which defines it");
     return darkroom::view_of_configuration(configuration, display_, view_);
 }
 

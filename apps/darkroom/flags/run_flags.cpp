@@ -103,9 +103,9 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
          {std::pair(bits_.has_value(), "--bits"), std::pair(space_.is_given(), "--output-space"),
           std::pair(!compression_.empty(), "--compression"), std::pair(quality_.is_given(), "--quality"),
           std::pair(ocio.has_display(), "--display")})
-        if (is_given) return user_error(fmt::format("{}: works for files, and not for --format {}", flag, *format_));
+        if (is_given) return user_error(fmt::format("{}: works for files only, not for --format {}", flag, *format_));
     if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
-        return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));
+        return user_error(fmt::format("--alpha: --format {} holds no alpha; rgba64le does", *format_));
     if (isatty(STDOUT_FILENO) != 0) return user_error("-o -: standard output is a terminal, which shows no pictures");
     return desc;
 }
@@ -154,7 +154,7 @@ Result<> RunFlags::start_report() const {
 Result<> RunFlags::check_stream() const {
     for (const auto& [is_given, flag] :
          {std::pair(skips_existing_, "--skip-existing"), std::pair(keeps_going, "--keep-going")})
-        if (is_given) return user_error(fmt::format("{}: a stream has no gaps, leave it out with -o -", flag));
+        if (is_given) return user_error(fmt::format("{}: a stream has no gaps; with -o - leave the flag out", flag));
     return {};
 }
 

@@ -133,8 +133,8 @@ const CLI::App* child_of(const CLI::App& command, std::string_view name) {
 }  // namespace
 
 void add_help_flags(CLI::App& program) {
-    program.set_help_flag(fmt::format("-h,{}", help_flag), "This; of an effect its flags");
-    program.set_help_all_flag("--help-all", "This, and what there is more to tell: flags of effects, other commands");
+    program.set_help_flag(fmt::format("-h,{}", help_flag), "Prints this help; with EFFECT, the flags of that effect");
+    program.set_help_all_flag("--help-all", "Prints this help with the flags of all effects, and other commands");
 }
 
 std::optional<int> answer_help(const CLI::App& program, std::span<char* const> arguments) {

@@ -111,8 +111,8 @@ Result<Json> document_of(const fs::path& path, const Options& options) {
     if (kind != kinds.end()) return kind->tell(path);
     std::vector<std::string_view> names;
     for (const Kind& known : kinds) names.push_back(known.name);
-    return user_error(
-        fmt::format("{}: is of no known kind; known are {}", printable(path.string()), fmt::join(names, ", ")));
+    return user_error(fmt::format("{}: is not a file of a known kind; known are {}", printable(path.string()),
+                                  fmt::join(names, ", ")));
 }
 
 int run(const Options& options) {

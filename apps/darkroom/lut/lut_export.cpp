@@ -162,9 +162,8 @@ Result<ExportedLook> export_look(const Look& look) {
                 fmt::format("{}: {}", names[static_cast<std::size_t>(entry - look.entries.data())], *why));
     }
     if (kept.entries.empty())
-        return darkroom::user_error(
-            fmt::format("{}: no effect in it is a function of the colour alone, which is all that a table can hold",
-                        look.shown_name));
+        return darkroom::user_error(fmt::format(
+            "{}: none of its effects maps colour to colour alone; a table holds nothing else", look.shown_name));
     const Baker baker(kept);
     std::vector<TableColor> light;
     const auto node = [](std::uint32_t i) { return LogShaper::decode(i / (edge - 1.0)); };

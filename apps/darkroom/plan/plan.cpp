@@ -62,8 +62,8 @@ Result<darkroom::WriteOptions> target_of(const Options& options) {
         out.samples = *samples;
     }
     if (out.space && !darkroom::color_of(out, *out.samples))
-        return darkroom::user_error(
-            fmt::format("--output-space {}: not of {} samples", out.space->name, darkroom::name_of(*out.samples)));
+        return darkroom::user_error(fmt::format("--output-space {}: {} samples cannot hold it", out.space->name,
+                                                darkroom::name_of(*out.samples)));
     return out;
 }
 

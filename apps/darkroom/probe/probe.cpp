@@ -64,7 +64,7 @@ Result<VkOffset2D> parse_place(const std::string& text) {
     const auto y = has_comma ? std::from_chars(x.ptr + 1, end, out.y) : x;
     if (has_comma && y.ec == std::errc() && y.ptr == end) return out;
     return user_error(
-        fmt::format("--at: '{}' is no pixel, allowed is X,Y: two whole numbers", darkroom::printable(text)));
+        fmt::format("--at: '{}' is not a pixel, allowed is X,Y: two whole numbers", darkroom::printable(text)));
 }
 
 Result<std::vector<VkOffset2D>> places(const Options& options, VkExtent2D extent) {
@@ -141,7 +141,7 @@ class Probe {
         }
         if (Result<> done = options_.ocio.check(options_.frame.has_input_space()); !done) return done;
         const std::vector<std::string> eyes = options_.frame.eyes();
-        if (eyes.size() > 1) return user_error("--eye both: one is probed at a time");
+        if (eyes.size() > 1) return user_error("--eye both: allowed is one view at a time");
         Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration, eyes.front());
         if (!frame) return failure(std::move(frame));
         if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)

@@ -141,15 +141,16 @@ class Render {
         motion_ = Motion(look_, timeline_, [this](std::size_t frame) { return job_.time_of(frame); });
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
-            return darkroom::user_error("--timings: nothing is post-processed");
+            return darkroom::user_error("--timings: no effect runs, so there is nothing to time");
         if (job_.render_scale != 1 && way_ != Way::Developed)
-            return darkroom::user_error("--render-scale: nothing is post-processed, --size is that of the picture");
+            return darkroom::user_error(
+                "--render-scale: no effect runs that could enlarge the picture; --size sets its size");
         if (job_.color && way_ != Way::Developed)
-            return darkroom::user_error("--output-space: nothing is post-processed");
+            return darkroom::user_error("--output-space: no effect runs that could encode the picture");
         if (!flags_.has_lens()) return {};
         if (way_ == Way::Display)
             return darkroom::user_error(
-                "--aperture: the scene's own shaders draw the picture from one place, linear light is needed");
+                "--aperture: the scene's own shaders draw no blur; a look does, or linear light in an .exr");
         switch_lens_blur_off(look_);
         return {};
     }
@@ -175,7 +176,7 @@ class Render {
         }
         if (Result<> done = read_look(); !done) return done;
         const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
-        if (job_.orbit.field_of_view && is_orthographic) warn("--fov: the scene's camera is orthographic, it has none");
+        if (job_.orbit.field_of_view && is_orthographic) warn("--fov: ignored, the scene's camera is orthographic");
         assets_ = scene::load_assets(scene_);
         if (Result<> done = check_model(); !done) return done;
         if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;

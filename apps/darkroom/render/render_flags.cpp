@@ -23,7 +23,7 @@ using darkroom::user_error;
 namespace {
 
 constexpr VkExtent2D default_extent{1920, 1080};
-constexpr const char* moment_group = "The moment";
+constexpr const char* moment_group = "The time";
 constexpr std::uint32_t usual_samples = 3, usual_samples_of_lens = 256;
 
 }  // namespace
@@ -57,7 +57,8 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
         .type_name("METRES")
         .default_str("that of the camera's target")
         .group(SceneFlags::drawing_group);
-    sensor_height_.add_to(command, "Height of the sensor behind it; with the field of view it gives the focal length")
+    sensor_height_
+        .add_to(command, "Height of the sensor behind the lens; with the field of view it gives the focal length")
         .type_name("MM")
         .default_str(fmt::format("{}", darkroom::render::LensDesc().sensor_height))
         .group(SceneFlags::drawing_group);
@@ -93,7 +94,7 @@ Result<std::vector<Shot>> RenderFlags::shots(const RenderJob& job) const {
     double time = 0;
     if (Result<> done = time_.read_to(time); !done) return failure(std::move(done));
     if (time_.is_given() && frames_)
-        return user_error("--time: --frames says the time of every frame, leave out one of them");
+        return user_error("--time: --frames sets the time of every frame; give one of the two");
     const double step = 1 / job.frames_per_second;
     const auto shot = [&](std::uint64_t number, double at) {
         return Shot{.number = number,
@@ -133,7 +134,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
         for (const fs::path& path : {shot.picture, shot.frame}) {
             if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
-                return user_error(fmt::format("{}: would be picture and frame", printable(path.string())));
+                return user_error(fmt::format("{}: -o and --save-frame name the same file", printable(path.string())));
             if (Result<> done = check_output(path, inputs, run.missing_folders()); !done) return done;
         }
     return {};
@@ -160,7 +161,7 @@ Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
     if (Result<> done = samples_.read_to(samples); !done) return failure(std::move(done));
     if (has_lens() && samples == 1)
         return user_error(
-            fmt::format("--samples = 1: with --aperture allowed is [2, {}]", darkroom::scene::most_samples));
+            fmt::format("--samples 1: with --aperture, allowed is [2, {}]", darkroom::scene::most_samples));
     return samples;
 }
 
@@ -170,8 +171,8 @@ Result<> RenderFlags::set_lens(RenderJob& job) const {
                                    std::pair(&sensor_height_, &lens.sensor_height)})
         if (Result<> done = flag->read_to(*to); !done) return done;
     if (!has_lens() && (focus_.is_given() || sensor_height_.is_given()))
-        return user_error(fmt::format("{}: there is no lens, --aperture makes one",
-                                      focus_.is_given() ? "--focus" : "--sensor-height"));
+        return user_error(
+            fmt::format("{}: needs --aperture, which makes a lens", focus_.is_given() ? "--focus" : "--sensor-height"));
     // So that highlights keep their light.
     job.desc.is_mean_weighed = !has_lens();
     return {};

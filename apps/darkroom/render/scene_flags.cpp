@@ -78,7 +78,7 @@ void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint
     height_.add_to(command, "Height of the picture")
         .type_name("PIXELS")
         .default_str(fmt::format("{}", usual_extent.height));
-    command.add_option("--size", size_, "Both at once").type_name("WxH");
+    command.add_option("--size", size_, "Width and height").type_name("WxH");
     command.add_flag("--own-files", has_own_files_,
                      "Refuses files that the scene, its prefabs or models name outside of their folders");
     command.add_option("--schemas", schemas_, "Does nothing; old command lines have it")
@@ -93,7 +93,7 @@ void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint
 Result<VkExtent2D> SceneFlags::extent() const {
     if (size_) {
         if (width_.is_given() || height_.is_given())
-            return user_error(fmt::format("--size {}: it says width and height, leave out --{}", printable(*size_),
+            return user_error(fmt::format("--size {}: sets width and height already; leave out --{}", printable(*size_),
                                           width_.is_given() ? "width" : "height"));
         return parse_size(*size_);
     }

@@ -110,8 +110,8 @@ std::vector<ReferenceLight> take_lights(darkroom::FrameFile& frame) {
 void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view shown) {
     if (frame.depth && !frame.camera.projection)
         warn(
-            fmt::format("{}: has depth and no projection: a vertical field of view of {} degrees is assumed, --fov or "
-                        "--camera says another",
+            fmt::format("{}: has depth and no projection: a vertical field of view of {} degrees is assumed; --fov or "
+                        "--camera sets another",
                         shown, assumed_field_of_view));
 }
 
@@ -235,8 +235,8 @@ Result<> check_codes(const darkroom::Look& look, darkroom::DevelopTarget target,
     }
     if (codes.is_standard_code() && codes.primaries == darkroom::Primaries::Rec709) return {};
     return darkroom::user_error(
-        fmt::format("{}: its code values are not sRGB's, which the file would say they are: allowed is "
-                    "--output-space {}, which makes them, too, and says so",
+        fmt::format("{}: makes code values other than sRGB, and the file would be marked as sRGB: allowed is "
+                    "--output-space {}, which encodes the picture and marks the file",
                     name, darkroom::output_space_names_of(true)));
 }
 

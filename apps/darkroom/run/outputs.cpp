@@ -58,7 +58,7 @@ Result<> check_folder(const fs::path& folder, MissingFolders missing) {
 Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFolders folders) {
     std::error_code error;
     if (inputs.contains(output))
-        return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
+        return user_error(fmt::format("{}: is also an input, and would be overwritten", printable(output.string())));
     if (Result<> done = check_folder(output.parent_path(), folders); !done) return done;
     // Reserving the file tells now, before any work, whether it can be written.
     const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
@@ -105,7 +105,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
         fs::path path = output_path(input, number, out, is_folder);
         const auto [maker, is_new] = makers.try_emplace(path, input);
         if (!is_new)
-            return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
+            return user_error(fmt::format("{}: two inputs would be written to it, {} and {}", printable(path.string()),
                                           printable(maker->second.string()), printable(input.string())));
         if (is_asked_for(number))
             if (Result<> done = check_output(path, files, folders); !done) return failure(std::move(done));

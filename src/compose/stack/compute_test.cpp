@@ -264,7 +264,7 @@ TEST_F(ComposeCompute, AValueIsReadByKernelsOfPasses) {
     composer.add(show, nullptr);
     const auto plan = composer.compile(host.compile_desc());
     ASSERT_FALSE(plan);
-    EXPECT_EQ(plan.error().text, "effect 'show': pass 'pass' reads 'show_metered', which is no value");
+    EXPECT_EQ(plan.error().text, "effect 'show': pass 'pass' reads 'show_metered', which is not a value");
 }
 
 TEST_F(ComposeCompute, AValueGoesOnAcrossEditsThatKeepItsEntry) {

@@ -24,8 +24,8 @@ bool is_made_of_numbers(const ParamInfo& row) {
 Result<> check_pulse(const plan::Entry& entry, const ParamInfo& row, const PulseDesc& desc) {
     const std::string shown = fmt::format("pulse '{}' of {}.{}", printable(desc.event), entry.desc.name, row.name);
     if (!is_made_of_numbers(row))
-        return user_error(
-            fmt::format("{}: the parameter takes {}; allowed is one of numbers", shown, expected_kind(row.kind)));
+        return user_error(fmt::format("{}: the parameter takes {}; allowed is a parameter of numbers", shown,
+                                      expected_kind(row.kind)));
     if (!(desc.duration > 0 && desc.duration <= longest_pulse))
         return user_error(fmt::format("{}: duration = {}: allowed is (0, {}] s", shown, desc.duration, longest_pulse));
     for (const float amount : desc.amount)

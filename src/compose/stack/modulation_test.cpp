@@ -219,7 +219,7 @@ TEST_F(ComposeModulation, ADistanceIsThatOfTheCamerasEye) {
 TEST_F(ComposeModulation, WhatCannotBeIsRefused) {
     const auto error = [](const Result<>& result) { return result ? std::string("done") : result.error().text; };
     EXPECT_EQ(error(add_pulse("on", 1)),
-              "pulse 'hit' of kinds.on: the parameter takes a boolean; allowed is one of numbers");
+              "pulse 'hit' of kinds.on: the parameter takes a boolean; allowed is a parameter of numbers");
     EXPECT_EQ(error(add_pulse("plan", 1)), "kinds has no parameter 'plan', did you mean 'plain'?");
     EXPECT_EQ(error(add_pulse("plain", 1, Envelope::Linear, 0)),
               "pulse 'hit' of kinds.plain: duration = 0: allowed is (0, 3600] s");

@@ -203,7 +203,9 @@ TEST_F(ComposeWires, WhatCannotBeReadIsRefused) {
     must(composer.rewire(later, {.mask = scene_alpha.previous()}));
     plan = composer.plan(desc);
     ASSERT_FALSE(plan);
-    EXPECT_EQ(plan.error().text, "the scene's alpha has no frame before: read it into an entry, and that one's");
+    EXPECT_EQ(
+        plan.error().text,
+        "the scene's alpha has no previous frame: copy it by an entry, and read the previous frame of that entry");
 }
 
 }  // namespace

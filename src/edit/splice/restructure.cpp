@@ -47,14 +47,15 @@ Result<LookEntry*> restructured(Look& look, std::string_view name) {
     Result<LookEntry*> entry = entry_at(look, name);
     if (!entry) return entry;
     if ((*entry)->is_of_ui)
-        return user_error(fmt::format("{}: an entry of the interface has its values and its switch", printable(name)));
+        return user_error(fmt::format("{}: belongs to the interface: allowed are changes of its values and its switch",
+                                      printable(name)));
     if (!look.is_flat) return entry;
     const EffectInfo* const effect = (*entry)->effect;
     const Toggle was_enabled = std::exchange((*entry)->state.enabled, true);
     become_stack(look);
     const auto found = std::ranges::find(look.entries, effect, &LookEntry::effect);
     if (found == look.entries.end())
-        return user_error(fmt::format("{}: the look is off, so that no entry can be switched in it", printable(name)));
+        return user_error(fmt::format("{}: the look is off; switch it on before its entries", printable(name)));
     found->state.enabled = was_enabled;
     return &*found;
 }

@@ -169,7 +169,7 @@ Result<> TomlEditor::add(const TomlPath& table, std::string_view pair, std::span
 }
 
 Result<> TomlEditor::add_inside(const TomlItem& table, std::string_view pair) {
-    if (text_[table.value_begin] != '{') return user_error(fmt::format("{}: it is no table", shown(table.path)));
+    if (text_[table.value_begin] != '{') return user_error(fmt::format("{}: is not a table", shown(table.path)));
     const TomlItem* last = nullptr;
     for (const TomlItem& item : items_)
         if (item.is_inside && item.path.size() > table.path.size() && is_within(item.path, table.path) &&

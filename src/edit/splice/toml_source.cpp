@@ -28,7 +28,7 @@ class Scanner {
             else
                 read_pair(table_, false);
         }
-        if (is_wrong_) return user_error("the text is no TOML");
+        if (is_wrong_) return user_error("the text is not TOML");
         return std::move(items_);
     }
 

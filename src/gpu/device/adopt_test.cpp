@@ -373,7 +373,7 @@ TEST(GpuAdopt, DeviceMemoryComesFromTheHostsHooksAlone) {
     EXPECT_TRUE(has(refused_upload(), "the buffer \"test\": the host's memory.allocate gave memory not mapped"));
     pool.maps = true;
     pool.offset = 1;
-    EXPECT_TRUE(has(refused_upload(), "gave memory at 1, which is no multiple of "));
+    EXPECT_TRUE(has(refused_upload(), "gave memory at 1, which is not a multiple of "));
     pool.offset = 0;
     pool.is_exhausted = true;
     const int asked = pool.asked;

@@ -152,7 +152,7 @@ Result<> Context::allocate_memory(const DeviceMemoryRequest& request, std::strin
     const bool is_aligned = out.offset % std::max<VkDeviceSize>(request.alignment, 1) == 0;
     if (is_aligned && (out.mapped != nullptr || !request.is_mapped)) return {};
     const std::string given =
-        is_aligned ? "not mapped" : fmt::format("at {}, which is no multiple of {}", out.offset, request.alignment);
+        is_aligned ? "not mapped" : fmt::format("at {}, which is not a multiple of {}", out.offset, request.alignment);
     free_memory(out);
     out = {};
     return user_error(fmt::format("{}: the host's memory.allocate gave memory {}", place, given));

@@ -100,7 +100,7 @@ Result<> check_kernel(std::span<const std::byte> file, std::size_t number, std::
         const std::optional<std::uint32_t> word = take_word(file, place);
         if (!word) return user_error("its words end too early");
         if (i == 0 && *word != spirv_magic)
-            return user_error(fmt::format("its words are no SPIR-V: they begin with {:#010x}", *word));
+            return user_error(fmt::format("its words are not SPIR-V: they begin with {:#010x}", *word));
     }
     return {};
 }
@@ -114,7 +114,7 @@ Result<BakedShaders> BakedShaders::read(std::span<const std::byte> file) {
         return user_error(
             fmt::format("baked kernels: {} bytes; allowed is at most {}", file.size(), std::size_t{most_bytes}));
     if (file.size() < sizeof(Head) || read_at<Head>(file, 0).magic != file_magic)
-        return user_error("baked kernels: these bytes are no file that 'darkroom bake' wrote");
+        return user_error("baked kernels: the bytes are not a file that 'darkroom bake' wrote");
     const auto head = read_at<Head>(file, 0);
     if (Result<> checked = check_head(head, file); !checked) return failure(std::move(checked));
     std::size_t place = sizeof(Head) + head.count * sizeof(IndexEntry);

@@ -158,7 +158,7 @@ class TiffChecker {
         const Entry* const entry = find(tag);
         if (entry == nullptr && otherwise != 0) return otherwise;
         if (entry == nullptr) return failure(malformed(fmt::format("tag {} is missing", tag)).error());
-        if (!is_whole(*entry)) return failure(malformed(fmt::format("tag {} is no whole number", tag)).error());
+        if (!is_whole(*entry)) return failure(malformed(fmt::format("tag {} is not a whole number", tag)).error());
         const std::uint64_t out = value(*entry, 0);
         if (out < 1 || out > most)
             return failure(malformed(fmt::format("tag {} is {}, [1, {}] is allowed", tag, out, most)).error());

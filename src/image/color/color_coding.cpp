@@ -75,7 +75,7 @@ double TransferCurve::decode(double code) const { return std::copysign(decode_po
 Result<InputSpace> find_input_space(std::string_view name) {
     const auto* const found = std::ranges::find(spaces, lower(name), &InputSpace::name);
     if (found != spaces.end()) return *found;
-    return user_error(fmt::format("'{}' is no known color space{}", printable(name), alternatives(name, names())));
+    return user_error(fmt::format("'{}' is not a known color space{}", printable(name), alternatives(name, names())));
 }
 
 std::string input_space_names() { return fmt::format("{}", fmt::join(names(), ", ")); }

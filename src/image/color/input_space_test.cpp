@@ -217,9 +217,10 @@ TEST_F(ImageInputSpace, ProfilesOfTiffAreNamed) {
 TEST(ImageColor, UnknownSpacesAreTold) {
     const auto space = find_input_space("acescc");
     ASSERT_FALSE(space);
-    EXPECT_EQ(space.error().text,
-              "'acescc' is no known color space, did you mean 'acescg'? allowed is srgb, rec709, rec2020, p3, acescg "
-              "or aces2065-1");
+    EXPECT_EQ(
+        space.error().text,
+        "'acescc' is not a known color space, did you mean 'acescg'? allowed is srgb, rec709, rec2020, p3, acescg "
+        "or aces2065-1");
 }
 
 }  // namespace

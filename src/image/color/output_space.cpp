@@ -37,8 +37,8 @@ bool is_any(const OutputSpace&) { return true; }
 Result<OutputSpace> find_output_space(std::string_view name) {
     const auto* const found = std::ranges::find(output_spaces, lower(name), &OutputSpace::name);
     if (found != output_spaces.end()) return *found;
-    return user_error(fmt::format("'{}' is no color space of pictures{}", printable(std::string(name)),
-                                  alternatives(std::string(name), names_where(is_any))));
+    return user_error(fmt::format("'{}' is not a color space that pictures can be written in{}",
+                                  printable(std::string(name)), alternatives(std::string(name), names_where(is_any))));
 }
 
 std::string output_space_names(std::string_view separator) {

@@ -303,7 +303,7 @@ TEST_F(ImageConfined, DecodingCanBeSwitchedOff) {
     for (const auto& path : {exr, png}) {
         const auto frame = read_frame(path);
         ASSERT_FALSE(frame);
-        EXPECT_EQ(frame.error().text, path.string() + ": pictures are not decoded here: that is switched off");
+        EXPECT_EQ(frame.error().text, path.string() + ": decoding of pictures is switched off in this process");
     }
     allow_decoding(true);
     for (const auto& path : {exr, png}) EXPECT_TRUE(read_frame(path));

@@ -314,7 +314,7 @@ Result<> check_decoded_size(std::uint64_t bytes, std::size_t file_size) {
 
 Result<> check_exr(std::span<const std::byte> file) {
     Reader reader(file);
-    if (reader.number<std::uint32_t>() != 0x01312f76) return user_error("is no OpenEXR file");
+    if (reader.number<std::uint32_t>() != 0x01312f76) return user_error("is not an OpenEXR file");
     const auto version = reader.number<std::uint32_t>();
     if (reader.is_past_end()) return cut_off();
     if ((version & 0xff) != 2) return user_error(fmt::format("OpenEXR version {}, 2 is read here", version & 0xff));

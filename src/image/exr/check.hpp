@@ -20,9 +20,9 @@ inline constexpr long long max_picture_side = 65536;
 /// second.
 [[nodiscard]] Result<> check_decoded_size(std::uint64_t bytes, std::size_t file_size);
 
-/// An error names the defect without the file name, which the caller knows. Refused: what is no OpenEXR file, is cut
-/// off or unfinished, is empty or larger than its bytes could hold, has deep pixels, or has chunks (a tile,
-/// or the lines that are packed together) of more than 256 MiB.
+/// An error names the defect without the file name, which the caller knows. Refused: what is not an OpenEXR file, is
+/// cut off or unfinished, is empty or larger than its bytes could hold, has deep pixels, or has chunks (a tile, or the
+/// lines that are packed together) of more than 256 MiB.
 [[nodiscard]] Result<> check_exr(std::span<const std::byte> file);
 
 }  // namespace darkroom

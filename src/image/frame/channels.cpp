@@ -402,7 +402,7 @@ Result<> add_mapping(LayerNames& names, std::string_view mapping) {
     const bool is_known = what == "color" || what == "depth" || what == "normals" || what == "velocity";
     if (equals == std::string_view::npos || equals + 1 == mapping.size() || !is_known)
         return user_error(
-            fmt::format("\"{}\" is no mapping: expected NAME=CHANNEL, NAME one of color, depth, normals, velocity",
+            fmt::format("\"{}\" is not a mapping: expected NAME=CHANNEL, NAME one of color, depth, normals, velocity",
                         one_printable_line(mapping)));
     names[what] = mapping.substr(equals + 1);
     return {};

@@ -100,7 +100,7 @@ Result<FileKind> kind_of_file(std::span<const std::byte> start) {
     if (tiff == std::string_view("II*\0", 4) || tiff == std::string_view("MM\0*", 4) ||
         tiff == std::string_view("II+\0", 4) || tiff == std::string_view("MM\0+", 4))
         return FileKind::Tiff;
-    return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
+    return user_error("is not a picture of a known format (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
 }
 
 Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path, ReadFileOptions options) {
@@ -113,7 +113,7 @@ Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path
 }
 
 Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
-    if (!is_decoding_allowed()) return user_error("pictures are not decoded here: that is switched off");
+    if (!is_decoding_allowed()) return user_error("decoding of pictures is switched off in this process");
     const Result<FileKind> kind = kind_of_file(bytes);
     if (!kind) return failure(kind.error());
     auto cleaned = check_structure(*kind, bytes);

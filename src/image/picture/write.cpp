@@ -118,10 +118,11 @@ Result<> check_space(const std::filesystem::path& path, FileKind kind, SampleKin
     if (!options.space) return {};
     const std::string_view name = options.space->name;
     if (options.view)
-        return user_error(fmt::format("{}: {} of a view of a display; it has its own", path.string(), name));
+        return user_error(fmt::format("{}: {} cannot be given with a view of a display, which has its own space",
+                                      path.string(), name));
     if (kind != FileKind::Png && kind != FileKind::OpenExr && name != "srgb")
         return user_error(
-            fmt::format("{}: {} cannot say that it is {}; .png .exr can", path.string(), name_of(kind), name));
+            fmt::format("{}: {} cannot be marked as {}; .png .exr can", path.string(), name_of(kind), name));
     if (color_of(options, samples)) return {};
     return user_error(fmt::format("{}: {} in {} samples; allowed: {}", path.string(), name, name_of(samples),
                                   output_space_names_of(is_integer(samples))));
@@ -155,7 +156,7 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
         samples = SampleKind::Integer16;
     if (Result<> done = check_space(path, *kind, samples, options); !done) return failure(std::move(done));
     if (options.view && !is_integer(samples))
-        return user_error(fmt::format("{}: {} samples hold light, and no view of a display; .png .jpg .tif hold one",
+        return user_error(fmt::format("{}: {} samples hold light, not a view of a display; .png .jpg .tif hold one",
                                       path.string(), name_of(samples)));
     if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
     std::string allowed;

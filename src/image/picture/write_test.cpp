@@ -170,7 +170,7 @@ TEST_F(ImageWrite, SpacesThatAFileCannotHoldAreRefused) {
     EXPECT_EQ(error("a.png", "pq"), name_of(SampleKind::Integer16)) << "eight bits are not enough";
     EXPECT_EQ(error("a.png", "pq", SampleKind::Integer8), name_of(SampleKind::Integer8)) << "but who wants them";
     EXPECT_EQ(error("a.png", "srgb"), name_of(SampleKind::Integer8));
-    EXPECT_EQ(error("a.jpg", "p3"), "a.jpg: JPEG cannot say that it is p3; .png .exr can");
+    EXPECT_EQ(error("a.jpg", "p3"), "a.jpg: JPEG cannot be marked as p3; .png .exr can");
     EXPECT_EQ(error("a.png", "rec2020"), "a.png: rec2020 in 16-bit integer samples; allowed: srgb, p3, pq, hlg");
     EXPECT_EQ(error("a.exr", "pq"), "a.exr: pq in half samples; allowed: srgb, p3, rec2020");
 }

@@ -63,7 +63,7 @@ Result<FoundTable> read_chain(const fs::path& path, const std::string& extension
     if (!table) return refuse(table.error());
     for (const std::vector<float>* const entries : {&table->shaper, &table->cube})
         if (!std::ranges::all_of(*entries, [](float v) { return std::isfinite(v); }))
-            return refuse({Fault::User, "its operations make colours that are no finite numbers"});
+            return refuse({Fault::User, "its operations make colours that are not finite"});
     FoundTable out{.file = {.table = std::move(*table)}, .format = extension};
     out.error = worst_error(out.file.table, **chain);
     return out;

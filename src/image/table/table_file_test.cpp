@@ -179,7 +179,7 @@ TEST_F(ImageTables, PicturesAreTablesByTheirSize) {
     ASSERT_TRUE(write_picture(file("photo.png"), Picture(40, 30)));
     const Result<FoundTable> photo = read_table_file(file("photo.png"));
     ASSERT_FALSE(photo);
-    EXPECT_NE(photo.error().text.find("a picture of 40x30 is no table"), std::string::npos) << photo.error().text;
+    EXPECT_NE(photo.error().text.find("a picture of 40x30 is not a table"), std::string::npos) << photo.error().text;
 }
 
 class ImageTablesData : public WithData {};
@@ -258,14 +258,14 @@ TEST_F(ImageTables, ATableNamesNoOtherFiles) {
         {"path=\"../a.clf\"", outside},
         {"path=\"more/../../a.clf\"", outside},
         {"path=\"$HOME/a.clf\"", "allowed is a name without $ and %"},
-        {"path=\"\"", "is no name of a file"},
+        {"path=\"\"", "is not a file's name"},
         {"path=\"none.clf\"", "there is no such file"},
-        {"path=\"pipe.clf\"", "is no regular file but a pipe"},
-        {"path=\"zero.clf\"", "is no regular file but a device"},
+        {"path=\"pipe.clf\"", "is a pipe, a regular file is needed"},
+        {"path=\"zero.clf\"", "is a device, a regular file is needed"},
         {"path=\".\"", "is a folder, a file is needed"},
         {"path=\"to_device.clf\"", "a.clf: to_device.clf, line 3: <Reference path = \"/dev/zero\">: " + outside},
-        {"path=\"a.clf\"", "names a table that names this one"},
-        {"path=\"back.clf\"", "names a table that names this one"},
+        {"path=\"a.clf\"", "refers to a table that refers back to this one"},
+        {"path=\"back.clf\"", "refers to a table that refers back to this one"},
         {"path=\"twice29.clf\"", "at most 64 of"},
         {"basePath=\"/dev\" path=\"half.clf\"", "<Reference basepath = \"/dev\">: allowed is a path"},
         {"alias=\"x\"", "<Reference alias = \"x\">: allowed is a path"},

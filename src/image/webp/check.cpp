@@ -69,7 +69,7 @@ Result<> look_at(std::string_view name, Bytes data, Found& found) {
 
 Result<WebpPicture> check_webp(Bytes file) {
     if (file.size() < file_head + chunk_head)
-        return user_error(fmt::format("truncated: {} bytes are no WebP file", file.size()));
+        return user_error(fmt::format("truncated: {} bytes are not a WebP file", file.size()));
     const std::uint64_t end = std::uint64_t{little_endian(file, 4, 4)} + chunk_head;
     if (end > file.size()) return user_error(fmt::format("truncated: {} bytes of {}", file.size(), end));
     file = file.first(static_cast<std::size_t>(end));

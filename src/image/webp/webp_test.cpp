@@ -95,7 +95,7 @@ TEST(ImageWebp, WhatItsChunksDoNotHoldIsRefused) {
         EXPECT_EQ(told_of(text), "");
         EXPECT_EQ(told_of(text + "tail"), "");
         EXPECT_TRUE(told_of(text.substr(0, 40)).starts_with("truncated: 40 bytes of ")) << told_of(text.substr(0, 40));
-        EXPECT_EQ(told_of(text.substr(0, 12)), "truncated: 12 bytes are no WebP file");
+        EXPECT_EQ(told_of(text.substr(0, 12)), "truncated: 12 bytes are not a WebP file");
     }
     EXPECT_EQ(told_of(riff(std::string("VP8L\xff\0\0\0", 8) + "abcd")), "truncated: chunk VP8L has 4 bytes of 255");
     EXPECT_EQ(told_of(riff(chunk_of("EXIF", "abcd"))), "has no picture");

@@ -70,7 +70,7 @@ Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptio
     const Result<Look> layer = read_look(file, own);
     if (!layer) return failure(layer.error());
     if (layer->written.empty() || layer->ui)
-        return user_error(fmt::format("{}: expected values in [post_process] and no [ui], to lay them over a look",
+        return user_error(fmt::format("{}: a look that is laid over another has values in [post_process], and no [ui]",
                                       layer->shown_name));
     Result<> done = Layer(look, *layer, file.parent_path(), options).lay();
     return done ? done

@@ -55,8 +55,9 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
     if (const auto found = loaded_.find({path, use}); found != loaded_.end()) return found->second;
     // The first that is too much is told; those behind it are not read.
     if (numbers_ > options_.most_resource_numbers)
-        return user_error(fmt::format("{}: is not read, the look's tables and pictures before it hold too much",
-                                      printable(path.string())));
+        return user_error(
+            fmt::format("{}: is not read: the look's other tables and pictures hold as many numbers as are allowed",
+                        printable(path.string())));
     const auto read = [&]() -> Result<ResourceData> {
         if (options_.load_resource) return options_.load_resource(path, use);
         if (use != FileUse::Table)
@@ -71,8 +72,9 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
     if (!data) return failure(std::move(data));
     numbers_ += count_of(*data);
     if (numbers_ > options_.most_resource_numbers)
-        return user_error(fmt::format("{}: the look's tables and pictures hold {} numbers with it, allowed are {}",
-                                      printable(path.string()), numbers_, options_.most_resource_numbers));
+        return user_error(
+            fmt::format("{}: with it, the look's tables and pictures hold {} numbers, at most {} are allowed",
+                        printable(path.string()), numbers_, options_.most_resource_numbers));
     return loaded_[{path, use}] = std::make_shared<const ResourceData>(std::move(*data));
 }
 
@@ -126,8 +128,8 @@ std::string value_text(const LookEntry& entry, const ParamInfo& row) {
     if (row.kind != Kind::Resource) {
         // Where sizes are parts of the height anyway, plain numbers say the same.
         const std::span defaults = entry.effect->parameters.defaults;
-        const bool is_own = row.reach_word < defaults.size() &&
-                            defaults[row.reach_word] != static_cast<std::uint32_t>(Reach::Height);
+        const bool is_own =
+            row.reach_word < defaults.size() && defaults[row.reach_word] != static_cast<std::uint32_t>(Reach::Height);
         return is_own ? format_for_file(row, entry.words) : format(row, entry.words);
     }
     const LookResource* const resource = resource_of(entry, row);

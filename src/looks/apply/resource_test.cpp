@@ -166,7 +166,7 @@ TEST_F(LookResources, BehindWhatIsTooMuchNothingIsRead) {
                         },
                         .most_resource_numbers = 12});
     EXPECT_EQ(reads, 3) << error;
-    EXPECT_NE(error.find("2.cube: the look's tables and pictures hold 18 numbers with it, allowed are 12"),
+    EXPECT_NE(error.find("2.cube: with it, the look's tables and pictures hold 18 numbers, at most 12 are allowed"),
               std::string::npos)
         << error;
     EXPECT_NE(error.find("8.cube: is not read"), std::string::npos) << error;

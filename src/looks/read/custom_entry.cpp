@@ -81,7 +81,7 @@ Result<> place_entry(Look& look, LookEntry entry) try {
         is_found = true;
     }
     if (!is_found)
-        return user_error(fmt::format("{}{}{} accepts {}, which the picture of {} is nowhere",
+        return user_error(fmt::format("{}{}{} accepts {}, but no place of {} has such a picture",
                                       printable(entry.effect_file), entry.effect_file.empty() ? "" : ": ",
                                       entry.effect->name, names_of(accepts), look.shown_name));
     look.entries.insert(place, std::move(entry));

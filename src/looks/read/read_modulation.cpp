@@ -230,12 +230,12 @@ class ModulationReader {
             const LookEntry* const own = find_entry(look_, others[i]);
             if (own != nullptr ? own->effect == other->entries[i].effect : is_idle(other->entries[i])) continue;
             return wrong(node,
-                         fmt::format("look = {}: its entry '{}' ({}) is none of this look, which has {}", show(node),
+                         fmt::format("look = {}: its entry '{}' ({}) is not in this look, which has {}", show(node),
                                      others[i], other->entries[i].effect->name, fmt::join(names_, ", ")));
         }
         for (LookEntry& entry : look_.entries) add_difference(entry, *other, layer);
         if (layer.values.empty())
-            reader_.report(node, Weight::Slip, fmt::format("look = {}: it is no other look", show(node)));
+            reader_.report(node, Weight::Slip, fmt::format("look = {}: a look cannot be its own layer", show(node)));
     }
 
     /// What the entry is in the layer's look, where it has a part in either picture.

@@ -62,8 +62,8 @@ PassBuffer Builder::find_value(std::string_view name) const {
 
 bool Builder::check_value(std::string_view reader, const std::string& name, PassBuffer value) {
     if (value.index < planner_.buffers_.size() && planner_.buffers_[value.index].numbers > 0) return true;
-    error =
-        fmt::format("effect '{}': {} reads '{}', which is no value", planner_.stack_[entry_].info->name, reader, name);
+    error = fmt::format("effect '{}': {} reads '{}', which is not a value", planner_.stack_[entry_].info->name, reader,
+                        name);
     return false;
 }
 

@@ -199,8 +199,9 @@ Result<> Planner::previous_of(Handle handle) {
         handle.id == scene_color.id || handle.id == scene_alpha.id ? no_entry : index_of(handle);
     const std::string name = entry == no_entry ? std::string("scene") : stack_[entry].desc.name;
     if (handle.id == scene_alpha.id || handle.id == ui_layer.id)
-        return user_error(fmt::format("{} has no frame before: read it into an entry, and that one's",
-                                      handle.id == ui_layer.id ? "the interface" : "the scene's alpha"));
+        return user_error(
+            fmt::format("{} has no previous frame: copy it by an entry, and read the previous frame of that entry",
+                        handle.id == ui_layer.id ? "the interface" : "the scene's alpha"));
     const graph::Size size = entry == no_entry ? graph::Size{} : output_size(entry);
     const VkFormat wanted = entry == no_entry ? VK_FORMAT_UNDEFINED : stack_[entry].desc.format;
     const VkFormat format = wanted == VK_FORMAT_UNDEFINED ? desc_.intermediate : wanted;

@@ -34,7 +34,7 @@ Result<> read_times(Document& document, int accessor, const std::string& pointer
     auto layout = document.layout(accessor);
     if (!layout) return failure(std::move(layout));
     if ((*layout)->components != 1 || (*layout)->component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
-        return user_error(fmt::format("{}/input: accessor {} is no SCALAR of floats", pointer, accessor));
+        return user_error(fmt::format("{}/input: accessor {} is not a SCALAR of floats", pointer, accessor));
     auto numbers = document.numbers(accessor);
     if (!numbers) return failure(std::move(numbers));
     times = std::move(numbers->values);

@@ -69,13 +69,13 @@ Result<nlohmann::json> parse_json(std::span<const std::byte> bytes, Budget& budg
         return failure(std::move(taken));
     try {
         auto json = nlohmann::json::parse(text);
-        if (!json.is_object()) return user_error("the JSON is no object");
+        if (!json.is_object()) return user_error("the JSON is not an object");
         return json;
     } catch (const std::exception& error) {
         // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
         std::string_view what = error.what();
         if (const std::size_t end = what.find("] "); end != std::string_view::npos) what.remove_prefix(end + 2);
-        return user_error(fmt::format("is no JSON: {}", what));
+        return user_error(fmt::format("is not JSON: {}", what));
     }
 }
 
@@ -107,8 +107,8 @@ Result<Container> split_binary(std::span<const std::byte> file, Budget& budget) 
         position += size;
         if (size % 4 != 0) {
             if (index == 0 || position < length)
-                return user_error(fmt::format("GLB chunk {}: {} bytes is no multiple of 4", index, size));
-            container.warnings.push_back(fmt::format("GLB chunk {}: {} bytes is no multiple of 4", index, size));
+                return user_error(fmt::format("GLB chunk {}: {} bytes is not a multiple of 4", index, size));
+            container.warnings.push_back(fmt::format("GLB chunk {}: {} bytes is not a multiple of 4", index, size));
         }
         if ((index == 0) != (type == json_chunk))
             return user_error(fmt::format("GLB chunk {}: the first chunk, and no other, must be JSON", index));
@@ -226,7 +226,7 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     std::size_t count = 0;
     for (const char c : uri) {
         const std::uint32_t digit = digits[static_cast<unsigned char>(c)];
-        if (digit == 255) return user_error("a data URI with a character that is no base64");
+        if (digit == 255) return user_error("a data URI with a character outside base64");
         group = group << 6 | digit;
         if (++count % 4 == 0)
             for (const int shift : {16, 8, 0}) bytes.push_back(static_cast<std::byte>(group >> shift & 0xff));

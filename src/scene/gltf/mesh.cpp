@@ -237,7 +237,7 @@ Result<std::vector<std::uint32_t>> read_corners(Document& document, const tinygl
     auto layout = document.layout(source.indices);
     if (!layout) return failure(std::move(layout));
     if ((*layout)->components != 1)
-        return user_error(fmt::format("{}/indices: accessor {} is no SCALAR", pointer, source.indices));
+        return user_error(fmt::format("{}/indices: accessor {} is not a SCALAR", pointer, source.indices));
     if (const int view = document.model().accessors[static_cast<std::size_t>(source.indices)].bufferView; view >= 0)
         if (document.model().bufferViews[static_cast<std::size_t>(view)].byteStride != 0)
             document.faults().warn(fmt::format("{}/indices: bufferView {} has a byteStride", pointer, view));

@@ -238,7 +238,7 @@ TEST_F(SceneGltfRefuse, WordsOfTheJsonLibraryAreOurs) {
         const auto model = read_model(file("model.gltf"));
         ASSERT_FALSE(model);
         EXPECT_EQ(model.error().text.find("json.exception"), std::string::npos) << model.error().text;
-        EXPECT_NE(model.error().text.find("is no JSON: "), std::string::npos) << model.error().text;
+        EXPECT_NE(model.error().text.find("is not JSON: "), std::string::npos) << model.error().text;
     }
 }
 

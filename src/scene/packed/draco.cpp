@@ -52,7 +52,7 @@ class HeadReader {
 Result<DracoHead> read_draco_head(std::span<const std::byte> bytes) {
     constexpr std::string_view name = "DRACO";
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (bytes.size() < head_size || !text.starts_with(name)) return user_error("is no Draco mesh");
+    if (bytes.size() < head_size || !text.starts_with(name)) return user_error("is not a Draco mesh");
     if (bytes[5] != version_major || bytes[6] != version_minor)
         return user_error(fmt::format("is of version {}.{}, 2.2 is read", std::to_integer<int>(bytes[5]),
                                       std::to_integer<int>(bytes[6])));

@@ -149,7 +149,7 @@ TEST_F(ScenePackedDraco, DamagedBytesAreRefused) {
             out.bytes[at] = value;
             return out;
         };
-        expect_refused("is no Draco mesh", changed(0, 'X'));
+        expect_refused("is not a Draco mesh", changed(0, 'X'));
         expect_refused("is of version 2.1, 2.2 is read", changed(6, 1));
         expect_refused("has no triangles", changed(7, 0));
         expect_refused("has metadata, which is not read", changed(10, 0x80));

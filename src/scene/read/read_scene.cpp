@@ -315,8 +315,8 @@ Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& 
     if (!table) return failure(table.error());
     if (!reading::is_scene(*table))
         return user_error(
-            fmt::format("{}: is no scene: it has no table [scene], [camera], [environment], [entities], "
-                        "[prefabs], nor any other of theirs{}",
+            fmt::format("{}: is not a scene: it has no table [scene], [camera], [environment], [entities], "
+                        "[prefabs], nor any other table of a scene{}",
                         shown, reading::has_look(*table) ? "; a look is what --look takes" : ""));
     return reading::scene_of(*table, *text, path, options);
 }
