@@ -270,7 +270,8 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
     const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side) {
         if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
-        settle(fmt::format("fit {}", side), views_[side]->fit(*source_, wanted, interface_->format()));
+        settle(fmt::format("fit {}", side),
+               views_[side]->fit(*source_, wanted, interface_->format(), !wanted_.pictures.empty()));
         extent = least_of(extent, views_[side]->most());
     }
     full_extent_ = extent;

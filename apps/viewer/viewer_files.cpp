@@ -184,8 +184,10 @@ void Viewer::store_picture(const PresentFrame& frame) {
     }
     darkroom::gpu::Context& context = device_->context();
     const LookView& view = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
-    // Where there is none yet, the next frame is stored.
-    while (!wanted_.pictures.empty() && view.picture().is_given()) {
+    // Where there is none yet, the next frame is stored; and a picture that is kept is the finished one: a plan for a
+    // larger one, or for the look before the last edit, has other bits.
+    const bool is_coming = !is_fixed() && !source_->display_picture() && view.is_coming();
+    while (!wanted_.pictures.empty() && view.picture().is_given() && !is_coming) {
         std::filesystem::path path = std::move(wanted_.pictures.back());
         wanted_.pictures.pop_back();
         Result<darkroom::Readback> read = darkroom::Readback::create(context, view.picture());

@@ -51,7 +51,7 @@ Result<> LookView::show(const darkroom::Look& look) {
     return followed->needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
 }
 
-Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui) {
+Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui, bool is_kept) {
     CompileDesc wanted = source.compile_desc({});
     // A source that was read again knows its formats when it is prepared.
     if (wanted.color.format == VK_FORMAT_UNDEFINED) return {};
@@ -69,11 +69,12 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui)
     const bool fits = extent.width <= had.width && extent.height <= had.height;
     frames_alike_ = is_equal(extent, last_extent_) ? frames_alike_ + 1 : 0;
     last_extent_ = extent;
-    const bool is_settled = is_equal(extent, had) || (fits && frames_alike_ < frames_to_settle);
+    const bool is_waiting = !is_kept && frames_alike_ < frames_to_settle;
+    const bool is_settled = is_equal(extent, had) || (fits && is_waiting);
     is_settling_ = !is_equal(extent, had);
     if (is_compiled_ && is_settled && is_same(wanted, compiled_)) return {};
     // While sizes come and go a plan only grows.
-    wanted.max_extent = frames_alike_ < frames_to_settle ? most_of(extent, had) : extent;
+    wanted.max_extent = is_waiting ? most_of(extent, had) : extent;
     return compile(wanted);
 }
 

@@ -28,8 +28,10 @@ class LookView {
     /// beside the frames, which go on with the plan there is.
     [[nodiscard]] darkroom::Result<> show(const darkroom::Look& look);
     /// Makes room for frames of this source and extent: the first time at once, later beside the frames. To be called
-    /// in every frame. `ui`: of the interface's image; UNDEFINED: there is none.
-    [[nodiscard]] darkroom::Result<> fit(const LiveSource& source, VkExtent2D extent, VkFormat ui);
+    /// in every frame. `ui`: of the interface's image; UNDEFINED: there is none. `is_kept`: the picture is one to keep,
+    /// so that a plan of this very extent is made without a wait for other sizes.
+    [[nodiscard]] darkroom::Result<> fit(const LiveSource& source, VkExtent2D extent, VkFormat ui,
+                                         bool is_kept = false);
     /// The largest that frames may be now, whichever of the plans under way the next record takes.
     [[nodiscard]] VkExtent2D most() const;
     /// A picture of this extent. Where it has another, no frame is unfinished.
