@@ -209,6 +209,41 @@ TEST_F(DocumentHistory, PulsesAndLayersComeAndGoWithTheirText) {
     EXPECT_NE(refused([](Look& look) { return remove_layer_value(look, 1, 1); }).find("only value"), std::string::npos);
 }
 
+TEST_F(DocumentHistory, ALayerMayBeTheLookOfAFileAndHaveADistance) {
+    Saved saved("[post_process]\nbloom_intensity = 0.2\n");
+    ASSERT_TRUE(saved.is_open());
+    const fs::path folder = saved.document().file().parent_path();
+    std::ofstream(folder / "night.toml", std::ios::binary) << "[post_process]\nbloom_intensity = 0.75\n";
+    const LookOptions options{.folder = folder};
+    const auto add = [&](const std::string& file) {
+        Look look = saved.document().look();
+        const Result<std::size_t> made = add_layer_of(look, "night", file, options);
+        return made ? std::string() : made.error().text;
+    };
+    EXPECT_EQ(add("night.toml"), "");
+    EXPECT_NE(add("none.toml").find("none.toml"), std::string::npos) << add("none.toml");
+    saved.edit([&](Look& look) {
+        const Result<std::size_t> made = add_layer_of(look, "night", "night.toml", options);
+        return made ? Result<>() : Result<>(failure(made.error()));
+    });
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), saved.first() + "\n[[layer]]\nname = \"night\"\nlook = \"night.toml\"\nweight = 1.0\n");
+    const auto read_again = [&] {
+        const Result<Look> read = read_look(saved.document().file(), {});
+        return read ? *read : Look{};
+    };
+    EXPECT_TRUE(is_same(read_again(), saved.document().look()));
+    for (const bool is_on : {true, false}) {
+        saved.edit([&](Look& look) { return set_layer_distance(look, 0, is_on); });
+        ASSERT_TRUE(saved.save());
+        EXPECT_EQ(saved.text().find("distance = {") != std::string::npos, is_on) << saved.text();
+        EXPECT_TRUE(is_same(read_again(), saved.document().look())) << saved.text();
+    }
+    while (saved.has_undo()) saved.undo();
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), saved.first());
+}
+
 // What others write is the text from then on: their comments stay, on every way through the steps.
 TEST_F(DocumentHistory, WhatOthersWroteStaysOnEveryWay) {
     Saved saved(flat);

@@ -122,6 +122,8 @@ inline Result<> random_mover_edit(std::mt19937& random, Look& look) {
     const Mover mover{is_layer, below(random, count)};
     const std::size_t values = values_of(look, mover).size();
     if (act < 4) return remove_mover(look, mover);
+    if (is_layer && below(random, 4) == 0)
+        return set_layer_distance(look, mover.number, !look.layers[mover.number].distance.has_value());
     if (is_layer && below(random, 2) == 0)
         return act == 4 ? add_layer_value(look, mover.number, what.entry, what.row->name)
                         : remove_layer_value(look, mover.number, below(random, values));

@@ -67,6 +67,10 @@ void write_modulation(std::string& out, const Look& look);
 /// What is off is on with an amount of 0, so that it comes and goes without a step: what reading a look does with an
 /// entry whose amount a pulse or a layer moves.
 void wake(LookEntry& entry);
+/// The values of a layer that is the look of a file, named relative to the options' folder: those in which it differs.
+/// Entries of `look` that it wakes are woken. Errors: those of the file; it has an entry that `look` lacks.
+[[nodiscard]] Result<std::vector<LookLayer::Value>> layer_values(Look& look, const std::string& file,
+                                                                 const LookOptions& options);
 /// The text of a look's file, if it is one that may be read.
 [[nodiscard]] Result<std::string> read_look_text(const std::filesystem::path& path);
 /// Letters, digits, '_' and '-', up to 64.

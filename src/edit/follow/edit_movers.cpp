@@ -50,6 +50,13 @@ Result<> check_room(std::string_view what, std::size_t count, std::size_t most) 
     return user_error(fmt::format("{} entries of {}: allowed are {}", count + 1, what, most));
 }
 
+Result<> check_new_layer(const Look& look, std::string_view name) {
+    if (Result<> done = check_name("name", name); !done) return done;
+    if (Result<> done = check_room("layer", look.layers.size(), most_layers); !done) return done;
+    if (std::ranges::count(look.layers, name, &LookLayer::name) == 0) return {};
+    return user_error(fmt::format("two layers are named '{}'", name));
+}
+
 LookLayer::Value present_value(const Target& target) {
     const StateWords state = state_words(target.entry->state);
     const std::span<const std::uint32_t> words =
@@ -91,16 +98,34 @@ Result<std::size_t> add_pulse(Look& look, std::string_view event, std::string_vi
 }
 
 Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_view entry, std::string_view parameter) {
-    if (Result<> done = check_name("name", name); !done) return failure(std::move(done));
-    if (Result<> done = check_room("layer", look.layers.size(), most_layers); !done) return failure(std::move(done));
-    if (std::ranges::count(look.layers, name, &LookLayer::name) > 0)
-        return user_error(fmt::format("two layers are named '{}'", name));
+    if (Result<> done = check_new_layer(look, name); !done) return failure(std::move(done));
     look.layers.push_back(
         {.name = std::string(name), .file = {}, .state = {.weight = 1}, .distance = {}, .values = {}});
     Result<> done = add_layer_value(look, look.layers.size() - 1, entry, parameter);
     if (done) return look.layers.size() - 1;
     look.layers.pop_back();
     return failure(std::move(done));
+}
+
+Result<std::size_t> add_layer_of(Look& look, std::string_view name, const std::string& file,
+                                 const LookOptions& options) {
+    if (Result<> done = check_new_layer(look, name); !done) return failure(std::move(done));
+    Result<std::vector<LookLayer::Value>> values = layer_values(look, file, options);
+    if (!values) return failure(std::move(values));
+    if (values->empty()) return user_error(fmt::format("{}: it is no other look", printable(file)));
+    look.layers.push_back({.name = std::string(name),
+                           .file = file,
+                           .state = {.weight = 1},
+                           .distance = {},
+                           .values = std::move(*values)});
+    return look.layers.size() - 1;
+}
+
+Result<> set_layer_distance(Look& look, std::size_t layer, bool is_on) {
+    if (layer >= look.layers.size()) return user_error("the layer was removed");
+    std::optional<LayerDistance>& distance = look.layers[layer].distance;
+    if (distance.has_value() != is_on) distance = is_on ? std::optional(LayerDistance{}) : std::nullopt;
+    return {};
 }
 
 Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, std::string_view parameter) {

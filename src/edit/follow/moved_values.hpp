@@ -46,6 +46,12 @@ struct Movable {
 /// Adds a layer of one value, its present one, with its whole weight. Errors: as above; another has this name.
 [[nodiscard]] Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_view entry,
                                             std::string_view parameter);
+/// Adds a layer that is the look of a file, relative to the options' folder, with its whole weight. Errors: as above;
+/// those of the file; it has an entry that this look lacks, or differs in nothing.
+[[nodiscard]] Result<std::size_t> add_layer_of(Look& look, std::string_view name, const std::string& file,
+                                               const LookOptions& options);
+/// Lets the camera's distance from a point multiply a layer's weight, or no longer. Errors: the layer is not there.
+Result<> set_layer_distance(Look& look, std::size_t layer, bool is_on);
 /// Adds a value to a layer: its present one. Errors: as above; the layer has it, or its values are those of a file.
 Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, std::string_view parameter);
 /// Takes the value of this number, as values_of has them, out of a layer. Errors: it is none of its values; it is the

@@ -13,12 +13,6 @@ namespace darkroom {
 
 namespace {
 
-/// Has this entry no part in the picture, as its look has it?
-bool is_idle(const LookEntry& entry) {
-    const EffectInfo& effect = *entry.effect;
-    return entry.state.enabled.on == 0 || (effect.is_identity != nullptr && effect.is_identity(entry.words.data()));
-}
-
 /// The number with which the effect changes nothing at 0; null: it has none.
 const ParamInfo* amount_of(const LookEntry& entry) {
     for (const ParamInfo& row : entry.effect->parameters.rows)
@@ -219,44 +213,11 @@ class ModulationReader {
         layer.file = text_of(table, "a layer", "look", false);
         if (layer.file.empty()) return;
         const toml::node& node = *table.get("look");
-        LookOptions options = reader_.options();
-        options.allows_modulation = false;
-        options.is_scene = false;
-        options.folder.clear();
-        Result<Look> other = read_look(reader_.options().folder / layer.file, options);
-        if (!other) return wrong(node, fmt::format("look = {}: {}", show(node), other.error().text));
-        const std::vector<std::string> others = entry_names(*other);
-        for (std::size_t i = 0; i < others.size(); ++i) {
-            const LookEntry* const own = find_entry(look_, others[i]);
-            if (own != nullptr ? own->effect == other->entries[i].effect : is_idle(other->entries[i])) continue;
-            return wrong(node,
-                         fmt::format("look = {}: its entry '{}' ({}) is not in this look, which has {}", show(node),
-                                     others[i], other->entries[i].effect->name, fmt::join(names_, ", ")));
-        }
-        for (LookEntry& entry : look_.entries) add_difference(entry, *other, layer);
+        Result<std::vector<LookLayer::Value>> values = layer_values(look_, layer.file, reader_.options());
+        if (!values) return wrong(node, fmt::format("look = {}: {}", show(node), values.error().text));
+        layer.values = std::move(*values);
         if (layer.values.empty())
             reader_.report(node, Weight::Slip, fmt::format("look = {}: a look cannot be its own layer", show(node)));
-    }
-
-    /// What the entry is in the layer's look, where it has a part in either picture.
-    void add_difference(LookEntry& entry, Look& other, LookLayer& layer) {
-        // A look that says nothing of the interface leaves it as it is.
-        if (entry.is_of_ui && !other.ui) return;
-        const std::string name = name_of(&entry);
-        const auto add = [&](const ParamInfo& row, std::span<const std::uint32_t> words) {
-            const auto own = words.subspan(row.word, row.words);
-            layer.values.push_back({name, std::string(row.name), {own.begin(), own.end()}});
-        };
-        const LookEntry* const there = find_entry(other, name);
-        LookEntry layered = there == nullptr ? entry : *there;
-        if (there == nullptr) layered.state.enabled = false;
-        if (is_idle(entry) && is_idle(layered)) return;
-        wake(is_idle(entry) ? entry : layered);
-        const StateWords state = state_words(layered.state), base = state_words(entry.state);
-        for (const ParamInfo& row : entry_rows.rows)
-            if ((row.name == "enabled" || row.name == "opacity") && state[row.word] != base[row.word]) add(row, state);
-        for (const ParamInfo& row : entry.effect->parameters.rows)
-            if (row.kind != Kind::Resource) add(row, layered.words);
     }
 
     LookReader& reader_;

@@ -90,6 +90,23 @@ void add(PanelState& state, const NewMover& wanted) {
                });
 }
 
+void add_of_file(PanelState& state, const std::string& name) {
+    ImGui::CloseCurrentPopup();
+    state.files.open({.title = "A look as a layer",
+                      .start = state.document->options().folder,
+                      .extensions = {".toml"},
+                      .then = [&state, name](const std::filesystem::path& file) {
+                          const LookOptions& options = state.document->options();
+                          const std::string relative = file.lexically_proximate(options.folder).string();
+                          state.edit(fmt::format("add layer {}", name), [&](Look& look) -> Result<> {
+                              const Result<std::size_t> made = edit::add_layer_of(look, name, relative, options);
+                              if (!made) return failure(made.error());
+                              state.wanted_part = LookPart{.mover = {true, *made}};
+                              return {};
+                          });
+                      }});
+}
+
 void draw_popup(PanelState& state) {
     ImGui::SetNextWindowSize({18 * ImGui::GetFontSize(), 0});
     if (!ImGui::BeginPopup(popup)) return;
@@ -112,6 +129,13 @@ void draw_popup(PanelState& state) {
     is_taken |= ImGui::Button("Add", {-FLT_MIN, 0});
     ImGui::EndDisabled();
     state.note("mover/add");
+    if (wanted.is_layer && !wanted.layer) {
+        ImGui::BeginDisabled(!is_look_name(wanted.name));
+        if (ImGui::Button("Add the look of a file...", {-FLT_MIN, 0})) add_of_file(state, wanted.name);
+        ImGui::EndDisabled();
+        state.note("mover/file");
+        tooltip("At a weight of 1 the picture is that look's, as far as its entries are in this one.");
+    }
     if (is_pressed(ImGuiKey_Escape, false)) ImGui::CloseCurrentPopup();
     if (is_taken && can_add) {
         add(state, wanted);

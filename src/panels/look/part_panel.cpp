@@ -55,6 +55,17 @@ void draw_value_row(PanelState& state, edit::Mover mover, std::size_t number, co
         line.place);
 }
 
+void draw_distance_button(PanelState& state, std::size_t layer, const std::string& name) {
+    const bool has_distance = state.look().layers[layer].distance.has_value();
+    if (ImGui::Button(has_distance ? "Everywhere" : "By distance"))
+        state.edit(fmt::format("{} {}", name, has_distance ? "everywhere" : "by distance"),
+                   [=](Look& look) { return edit::set_layer_distance(look, layer, !has_distance); });
+    state.note("layer/distance");
+    tooltip(has_distance ? "Gives the layer the same weight wherever the camera is."
+                         : "Multiplies the weight by how near the camera is to a point of the world.");
+    ImGui::SameLine();
+}
+
 void draw_mover(PanelState& state, edit::Mover mover) {
     const std::vector<edit::MovedValue> values = edit::values_of(state.look(), mover);
     if (values.empty()) return state.part.reset();
@@ -79,6 +90,7 @@ void draw_mover(PanelState& state, edit::Mover mover) {
                        "Adds a value that the layer has of its own.", "layer/add_value");
         ImGui::SameLine();
     }
+    if (mover.is_layer) draw_distance_button(state, mover.number, name);
     if (ImGui::Button("Remove")) {
         state.part.reset();
         state.edit(fmt::format("remove {}", name), [mover](Look& look) { return edit::remove_mover(look, mover); });

@@ -213,6 +213,13 @@ TEST(PanelStack, PulsesAndLayersComeAndGo) {
     own.gui.frame(2);
     EXPECT_EQ(own.document.look().layers[0].values.size(), 1U) << "it has this one already";
     EXPECT_FALSE(own.panels.messages().is_empty());
+    own.click("layer/distance");
+    own.gui.frame(2);
+    EXPECT_TRUE(own.document.look().layers[0].distance);
+    EXPECT_TRUE(own.has("layer/night.near"));
+    own.click("layer/distance");
+    own.gui.frame(2);
+    EXPECT_FALSE(own.document.look().layers[0].distance);
     own.click("mover/remove");
     EXPECT_TRUE(own.document.look().layers.empty());
     while (own.document.can_undo()) own.document.undo();
