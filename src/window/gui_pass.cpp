@@ -103,8 +103,16 @@ std::vector<std::uint32_t> target_constants(const GuiPass::Desc& desc) {
     return {kind(), std::bit_cast<std::uint32_t>(desc.color.peak_nits)};
 }
 
+/// Does a pane show the codes of one view as they are?
+bool is_plain(const Pane& pane) {
+    return &second_view(pane) == &pane.view && pane.view.transfer == PaneTransfer::Encoded && pane.exposure == 0 &&
+           pane.channels == PaneChannels::Rgb && !pane.is_false_color && !pane.is_clipping_marked;
+}
+
 gpu::PipelineDesc pipeline_desc(std::string name, std::string fragment, const GuiPass::Desc& desc,
-                                VkDescriptorSetLayout layout) {
+                                VkDescriptorSetLayout layout, bool is_plain = false) {
+    std::vector<std::uint32_t> constants = target_constants(desc);
+    constants.push_back(is_plain ? 1 : 0);
     return {.name = std::move(name),
             .vertex = gui_vertex_shader(),
             .fragment = std::move(fragment),
@@ -114,7 +122,7 @@ gpu::PipelineDesc pipeline_desc(std::string name, std::string fragment, const Gu
                            {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(ImDrawVert, col)}},
             .sets = {layout},
             .push_constant_size = sizeof(Block),
-            .specialization = target_constants(desc),
+            .specialization = std::move(constants),
             .colors = {{.format = desc.format,
                         .is_blended = true,
                         .source = VK_BLEND_FACTOR_SRC_ALPHA,
@@ -163,7 +171,7 @@ VkRect2D scissor_of(const ImDrawCmd& command, const ImDrawData& data) {
 struct GuiPass::State {
     gpu::Context* context = nullptr;
     gpu::SetLayout layout;
-    gpu::Pipeline lists, panes;
+    gpu::Pipeline lists, panes, plain_panes;
     gpu::Image font;
     gpu::DescriptorSets font_set;
     void* font_texture = nullptr;
@@ -192,6 +200,10 @@ Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontA
         gpu::Pipeline::create(context, pipeline_desc("pane", pane_fragment_shader(), desc, state.layout.handle));
     if (!panes) return failure(std::move(panes));
     state.panes = std::move(*panes);
+    Result<gpu::Pipeline> plain = gpu::Pipeline::create(
+        context, pipeline_desc("plain pane", pane_fragment_shader(), desc, state.layout.handle, true));
+    if (!plain) return failure(std::move(plain));
+    state.plain_panes = std::move(*plain);
     state.slots.resize(desc.slots);
     const std::vector<VkDescriptorSetLayout> layouts(most_panes, state.layout.handle);
     for (DrawSlot& slot : state.slots) {
@@ -292,6 +304,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
     void* const texture = command.GetTexID();
     const bool is_font = texture == nullptr || texture == font_texture;
     VkDescriptorSet set = font_set.sets[0];
+    const gpu::Pipeline* pipeline = &lists;
     if (!is_font) {
         const Pane& pane = *static_cast<const Pane*>(texture);
         if (!pane.view.image.is_given()) return {};
@@ -299,12 +312,12 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
         if (!own) return failure(own.error());
         set = *own;
         set_pane(block, pane);
+        pipeline = is_plain(pane) ? &plain_panes : &panes;
     }
-    const gpu::Pipeline& pipeline = is_font ? lists : panes;
     const gpu::Dispatch& vk = context->vk;
-    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle);
-    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0, 1, &set, 0, nullptr);
-    vk.CmdPushConstants(commands, pipeline.layout, both_stages, 0, sizeof block, &block);
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->handle);
+    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->layout, 0, 1, &set, 0, nullptr);
+    vk.CmdPushConstants(commands, pipeline->layout, both_stages, 0, sizeof block, &block);
     vk.CmdSetScissor(commands, 0, 1, &scissor);
     vk.CmdDrawIndexed(commands, command.ElemCount, 1, first_index + command.IdxOffset,
                       first_vertex + static_cast<std::int32_t>(command.VtxOffset), 0);

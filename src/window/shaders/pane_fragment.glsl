@@ -2,6 +2,8 @@ layout(location = 0) in vec2 texel;
 layout(location = 1) in vec4 color;
 layout(location = 0) out vec4 result;
 
+// One view of codes as they are: the compiler drops all else, and most drivers in software run both sides of a branch.
+layout(constant_id = 2) const bool is_plain = false;
 const uint transfer_encoded = 0, transfer_scene_linear = 1, transfer_raw = 2;
 const uint channels_rgb = 0, channels_alpha = 4, channels_luminance = 5;
 const uint flag_second = 1, flag_false_color = 2, flag_clipping = 4;
@@ -62,7 +64,13 @@ vec3 shown_color(vec4 value, View view) {
     return picture;
 }
 
+vec3 plain_color(vec3 codes) { return any(isnan(codes)) ? vec3(0.0) : clamp(codes, 0.0, 1.0); }
+
 void main() {
+    if (is_plain) {
+        result = to_target(color * vec4(plain_color(fetch(first_image, block.first).rgb), 1.0));
+        return;
+    }
     bool has_second = (block.flags & flag_second) != 0;
     float from_divider = texel.x - block.divider;
     float pixel = fwidth(texel.x);
