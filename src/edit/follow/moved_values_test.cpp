@@ -75,6 +75,14 @@ TEST_F(MovedValues, AreWrittenWhereTheyStand) {
     EXPECT_EQ(set(night, "intensity", {1}), with("intensity = 0.75", "intensity = 1.0"));
 }
 
+TEST_F(MovedValues, AnAmountIsNoMoreThanAFileMaySay) {
+    const Look look = read(
+        "[post_process]\nfog_enabled = true\n[[pulse]]\nevent = \"hit\"\n"
+        "parameter = \"fog.height_origin\"\namount = 1\n");
+    const std::vector<MovedValue> values = values_of(look, {false, 0});
+    EXPECT_EQ(values.front().row.range.max, 1e6) << "and not the width of the parameter's interval";
+}
+
 TEST_F(MovedValues, RandomOnesReadAsTheyWereSet) {
     std::mt19937 random(5);
     Look look = read(std::string(text));

@@ -139,7 +139,7 @@ class ModulationReader {
         }
         constexpr std::array kinds{Kind::Float, Kind::Vec2, Kind::Vec3, Kind::Vec4};
         const bool is_one = node->is_number();
-        ParamInfo row{.name = "amount", .range = {-1e6, 1e6}, .kind = kinds[is_one ? 0 : count - 1]};
+        ParamInfo row{.name = "amount", .range = {-most_amount, most_amount}, .kind = kinds[is_one ? 0 : count - 1]};
         row.words = is_one ? 1 : count;
         std::array<std::uint32_t, 4> words{};
         if (!reader_.take(row, words, *node, "amount")) return false;
