@@ -75,6 +75,7 @@ NONE = {
     "Handle::is_given": "0 says it",
     "shadow_light": "the host's own arithmetic",
     "KernelStatistics::value": "the host's own search in a list",
+    "Plan::rounds": "one more than the largest round of the plan as JSON",
     "find_entry": "a look is opaque in C: darkroom_look_override changes what it holds",
 }
 

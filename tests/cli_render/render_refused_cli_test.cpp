@@ -36,7 +36,7 @@ TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
     expect_refused({"render", path("yard.scene.toml"), "-o", path("x.xyz")}, 1, ".xyz");
     expect_refused({"render", path("yard.scene.toml"), "-o", path("none/x.png")}, 1, "none");
     expect_refused({"render", path("yard.scene.toml"), "-o", path("x.exr"), "--frame", path("x.exr")}, 1,
-                   "picture and frame");
+                   "-o and --save-frame name the same file");
 }
 
 TEST_F(CliRenderRefused, WhatTheSceneReadsIsNotOverwritten) {

@@ -83,7 +83,7 @@ TEST_F(CliTemporal, StoredFramesAreDevelopedIntoLargerPictures) {
     expect_refused({"develop", path("half.exr"), "--output-size", "0x2", "-o", path("x.png")}, 1,
                    "--output-size 0x2: expected WIDTHxHEIGHT");
     expect_refused({"develop", path("half.exr"), "--output-size", "9x9", "--keep-layers", "-o", path("x.exr")}, 1,
-                   "--output-size: --keep-layers keeps");
+                   "--output-size: works without --keep-layers");
 }
 
 TEST_F(CliTemporal, SequencesOfLooksThatGatherFramesAreJittered) {

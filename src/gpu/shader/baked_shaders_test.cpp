@@ -102,7 +102,7 @@ TEST(BakedShaders, EveryNumberIsCheckedBeforeItIsUsed) {
     expect_refused(with(index_at + place_at, 0), "kernel 1 of 3: place 0: allowed is 172");
     expect_refused(with(index_at + index_size + place_at, ~0U), "kernel 2 of 3: place 4294967295");
     expect_refused(with(index_at + 2 * index_size + length_at, 7), "kernel 3 of 3: its words end too early");
-    expect_refused(with(index_at + 3 * index_size, 1), "no SPIR-V");
+    expect_refused(with(index_at + 3 * index_size, 1), "not SPIR-V");
     expect_refused(with(index_at + 3 * index_size, ~0U), "kernel 1 of 3: its words end too early");
     Bytes twice = whole;
     std::memcpy(twice.data() + index_at + index_size, twice.data() + index_at, index_size);
@@ -112,7 +112,7 @@ TEST(BakedShaders, EveryNumberIsCheckedBeforeItIsUsed) {
     put(longer, bytes_at, static_cast<std::uint32_t>(longer.size() - index_at - 3 * index_size));
     expect_refused(with_right_hash(longer), "1 bytes behind the last kernel");
     expect_refused(Bytes(BakedShaders::most_bytes + 1), "16777217 bytes; allowed is at most 16777216");
-    expect_refused(Bytes(64), "no file that 'darkroom bake' wrote");
+    expect_refused(Bytes(64), "not a file that 'darkroom bake' wrote");
 }
 
 TEST(BakedShaders, RandomBytesAreRefusedOrRead) {

@@ -75,7 +75,8 @@ TEST_F(LookLayers, BringTheirTables) {
 TEST_F(LookLayers, AreRefusedWhereTheySayNothingOrTooMuch) {
     for (const char* const text :
          {"", "[post_process]\n", "[[stack]]\neffect = \"encode\"\n", "[post_process]\nexposure = 2\n[ui]\n"}) {
-        EXPECT_NE(error_over(look_of(""), text).find("layer.toml: expected values in [post_process] and no [ui]"),
+        EXPECT_NE(error_over(look_of(""), text)
+                      .find("layer.toml: a look that is laid over another has values in [post_process], and no [ui]"),
                   std::string::npos)
             << text;
     }
