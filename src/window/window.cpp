@@ -45,6 +45,7 @@ struct Window::State {
     double wheel = 0;
     bool is_captured = false, is_news = true;
     std::set<int> held;             ///< keys; buttons as -1 and below
+    std::set<int> shortcuts;        ///< of these, keys that went down with Control, Alt or Super
     std::array<int, 4> windowed{};  ///< place and size before it became fullscreen
 
     void begin() {
@@ -90,6 +91,9 @@ Result<Window> Window::create(const WindowDesc& desc) {
         State& own = State::of(of);
         if (action == GLFW_PRESS) own.pressed.push_back({key, modifiers});
         own.hold(key, action);
+        if (action == GLFW_RELEASE) own.shortcuts.erase(key);
+        if (action == GLFW_PRESS && (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0)
+            own.shortcuts.insert(key);
     });
     glfwSetMouseButtonCallback(
         window, [](GLFWwindow* of, int button, int action, int) { State::of(of).hold(-1 - button, action); });
@@ -178,6 +182,7 @@ bool Window::is_cursor_captured() const { return state_->is_captured; }
 bool Window::take_news() { return std::exchange(state_->is_news, false) || !state_->held.empty(); }
 const std::vector<KeyPress>& Window::pressed() const { return state_->pressed; }
 bool Window::is_down(int key) const { return glfwGetKey(handle(), key) == GLFW_PRESS; }
+bool Window::is_held(int key) const { return is_down(key) && !state_->shortcuts.contains(key); }
 bool Window::is_button_down(int button) const { return glfwGetMouseButton(handle(), button) == GLFW_PRESS; }
 std::array<double, 2> Window::mouse_moved() const { return state_->moved; }
 double Window::wheel() const { return state_->wheel; }

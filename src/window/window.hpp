@@ -62,6 +62,8 @@ class Window {
     /// Keys that went down since the last poll, in order.
     [[nodiscard]] const std::vector<KeyPress>& pressed() const;
     [[nodiscard]] bool is_down(int key) const;
+    /// Is it down by itself? A key of a shortcut is not, even after Control has been let go.
+    [[nodiscard]] bool is_held(int key) const;
     [[nodiscard]] bool is_button_down(int button) const;
     /// How far the mouse went since the last poll, in pixels, and its wheel, in notches.
     [[nodiscard]] std::array<double, 2> mouse_moved() const;

@@ -144,6 +144,14 @@ TEST_F(CliViewer, WalkingChangesTheView) {
     leave();
 }
 
+TEST_F(CliViewer, AShortcutsKeyDoesNotMoveTheCamera) {
+    start({"play", scenes_folder + "dungeon.scene.toml", "--size", "320x180", "--paused"});
+    const Picture before = shot();
+    ASSERT_EQ(shell("xdotool keydown ctrl keydown s keyup ctrl sleep 1 keyup s"), 0);
+    EXPECT_EQ(difference(before, shot()), 0) << "though Control is let go first";
+    leave();
+}
+
 TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
     const std::string look = write("my.toml",
                                    "# mine\n[post_process]\nbloom_enabled = true  # it glows\nbloom_intensity = 0.2\n"

@@ -18,7 +18,7 @@ constexpr float degrees_a_pixel = 0.15F, degrees_a_height = 180;
 constexpr float fast = 4;
 
 float axis(const Window& window, int forth, int back) {
-    return (window.is_down(forth) ? 1.0F : 0.0F) - (window.is_down(back) ? 1.0F : 0.0F);
+    return (window.is_held(forth) ? 1.0F : 0.0F) - (window.is_held(back) ? 1.0F : 0.0F);
 }
 
 }  // namespace
@@ -62,10 +62,7 @@ void CameraRig::move(const Window& window, const Input& input, const scene::Snap
                 : look();
         if (window.wheel() != 0) scene::dolly(taken(seen), std::pow(0.9F, static_cast<float>(window.wheel())));
     }
-    const bool is_control = window.is_down(GLFW_KEY_LEFT_CONTROL) || window.is_down(GLFW_KEY_RIGHT_CONTROL);
-    Input now = input;
-    now.has_keys = input.has_keys && !is_control;
-    kind_ == Kind::Walk ? walk(window, now, seen) : fly(window, now, seen);
+    kind_ == Kind::Walk ? walk(window, input, seen) : fly(window, input, seen);
 }
 
 // The first step takes the scene's camera over; from then on whoever has it has weight.
@@ -75,7 +72,7 @@ void CameraRig::walk(const Window& window, const Input& input, const scene::Snap
     if (input.has_keys)
         step = {.move = {axis(window, GLFW_KEY_D, GLFW_KEY_A), axis(window, GLFW_KEY_W, GLFW_KEY_S)},
                 .is_running = window.is_down(GLFW_KEY_LEFT_SHIFT) || window.is_down(GLFW_KEY_RIGHT_SHIFT),
-                .jumps = window.is_down(GLFW_KEY_SPACE)};
+                .jumps = window.is_held(GLFW_KEY_SPACE)};
     if (!walk_ && step.move.x == 0 && step.move.y == 0 && !step.jumps) return;
     scene::FreeCamera& camera = taken(seen);
     if (!walk_) walk_ = scene::stand(*input.ground, camera.eye);
