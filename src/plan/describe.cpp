@@ -151,8 +151,8 @@ void close_up_rounds(Plan& plan) {
     std::vector<std::uint32_t> rounds;
     for (const PlanPass& pass : plan.passes) rounds.push_back(pass.round);
     std::ranges::sort(rounds);
-    const auto rest = std::ranges::unique(rounds);
-    rounds.erase(rest.begin(), rest.end());
+    // Not std::ranges::unique, whose subrange clang 14 cannot read in the standard library of gcc 12.
+    rounds.erase(std::unique(rounds.begin(), rounds.end()), rounds.end());
     for (PlanPass& pass : plan.passes)
         pass.round = static_cast<std::uint32_t>(std::ranges::lower_bound(rounds, pass.round) - rounds.begin());
 }

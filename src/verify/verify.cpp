@@ -307,12 +307,12 @@ std::string_view name_of(Finding::Kind kind) {
 }
 
 std::string text_of(const Finding& finding) {
-    constexpr std::array channels{"red", "green", "blue", "alpha"};
+    constexpr std::array channel_names{"red", "green", "blue", "alpha"};
     const Difference& worst = finding.worst;
     const std::string what = fmt::format("{}, {}: ", finding.subject.name, text_of(finding.form));
     if (finding.kind == Finding::Kind::Failed) return what + finding.error;
     const std::string pixel =
-        fmt::format("pixel ({}, {}), {}: {:.7g}", worst.x, worst.y, channels[worst.channel], worst.value);
+        fmt::format("pixel ({}, {}), {}: {:.7g}", worst.x, worst.y, channel_names[worst.channel], worst.value);
     const std::string others = fmt::format("{} of {} pixels", worst.pixels, finding.made.pixels.size());
     if (finding.kind == Finding::Kind::Reference)
         return fmt::format("{}{}, the reference says {:.7g} and allows {:.2g}; {}", what, pixel, worst.expected,
