@@ -23,12 +23,19 @@ const Taa& taa_of(const void* parameters) { return *static_cast<const Taa*>(para
 
 float ratio(std::uint32_t a, std::uint32_t b) { return static_cast<float>(a) / static_cast<float>(b); }
 
+/// Of what is shown, between 0 and 1: halves are coarse near 1, which is bright light.
+VkFormat shown_format(const PassBuilder& builder) {
+    return builder.is_written(VK_FORMAT_R16G16B16A16_UNORM) ? VK_FORMAT_R16G16B16A16_UNORM
+                                                            : VK_FORMAT_R16G16B16A16_SFLOAT;
+}
+
 /// Jitter is told in pixels of the scene: in those of the picture.
 std::array<float, 2> in_pixels(const std::array<float, 2>& jitter, const PassContext& context) {
     return {jitter[0] * ratio(context.frame_extent.width, context.scene_extent.width),
             jitter[1] * ratio(context.frame_extent.height, context.scene_extent.height)};
 }
 
+template <bool is_of_codes>
 void gather_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Camera& camera = *context.camera;
     const VkExtent2D in = context.frame_extent, made = context.output_extent;
@@ -46,7 +53,7 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
     const TaaExponents exponents(std::sqrt(double{out[1][0]} * double{out[1][1]}));
     out[4] = {static_cast<float>(1 / taa_most_frames(taa_of(parameters))),
               static_cast<float>(-exponents.narrow / std::log(2)), static_cast<float>(-exponents.wide / std::log(2)),
-              0};
+              is_of_codes ? 1.0f : 0.0f};
 }
 
 void motion_constants(const void*, const PassContext& context, std::span<PassVector> out) {
@@ -111,7 +118,8 @@ void build(PassBuilder& builder) {
          .constants = depth_vectors});
     const PassImage motion =
         builder.has_frame_image(FrameImage::Velocity) ? velocity(builder) : motion_of_camera(builder, inverse);
-    const PassBuilder::History light = builder.history({.name = "light", .is_of_output = true});
+    const VkFormat format = shown_format(builder);
+    const PassBuilder::History shown = builder.history({.name = "shown", .format = format, .is_of_output = true});
     const PassBuilder::History kept =
         builder.history({.name = "kept", .format = VK_FORMAT_R8G8_UNORM, .is_of_output = true});
     const std::vector<PassImage> made = builder.add_all(
@@ -123,21 +131,21 @@ void build(PassBuilder& builder) {
                     {.name = "taa_velocity", .image = motion, .is_loaded = true},
                     {.name = "taa_mask", .image = mask(builder), .is_loaded = true},
                     {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true},
-                    {.name = "taa_light_before", .image = light.previous},
+                    {.name = "taa_shown_before", .image = shown.previous},
                     {.name = "taa_kept_before", .image = kept.previous}},
-         .output = light.current,
-         .more_outputs = {kept.current},
+         .output = shown.current,
+         .more_outputs = {kept.current, builder.create({.name = "gathered", .is_of_output = true})},
          .custom_vectors = 5,
-         .constants = gather_constants});
+         .constants = format == VK_FORMAT_R16G16B16A16_UNORM ? gather_constants<true> : gather_constants<false>});
     if (made.empty()) return;
     if (taa_of(builder.parameters()).sharpness == 0.0f) {
-        builder.result(made.front());
+        builder.result(made.back());
         return;
     }
     builder.result(builder.add(
         {.name = "sharpen",
          .shader = "taa_sharpen.glsl",
-         .inputs = {{.name = "taa_gathered", .image = made.front(), .is_loaded = true},
+         .inputs = {{.name = "taa_gathered", .image = made.back(), .is_loaded = true},
                     {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true}},
          .output = builder.create({.name = "sharp", .is_of_output = true}),
          .custom_vectors = 1,

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Scene-linear. A pixel of the output: what the frame has near it, and what was gathered of the surface that it shows.
-// result[0] = (colour, alpha of the frame), result[1] = (frames that are in it, by their weight; how far samples are off its
-// luma), packed.
+// result[0] = (what is shown, stops of the unit), result[1] = (frames that are in it, by their weight; how far samples are off
+// its luma), packed, result[2] = (light, alpha of the frame).
 // custom[0] = (pixels of the frame a pixel of the output, jitter), custom[1] = (the inverse, jitter a moment ago),
 // custom[2], custom[3].xy: distance before = distance (x a + y b + c) + d + x e + y f of the frame's texel (x, y),
 // custom[3].zw = (has the past, frame), custom[4] = (inverse of the most frames, exponents of the Gaussian by which samples
-// count: where there is a past, and where there is none).
+// count: where there is a past, and where there is none; is what is shown kept in codes and not in halves).
 // Colours are mixed as a display will show them, c / (1 + max c) of exposed light (B. Karis, "High Quality Temporal
 // Supersampling", 2014), so that one bright sample does not outweigh all others, and in YCoCg.
 #include "taa_tone.glsl"
 
 const float taa_edge = 0.03;    // by so much of a distance a sample beside is another surface
 const float taa_nearer = 0.02;  // by so much of a distance something else was in front
-const float taa_cubic = -0.6;   // slope of the filter of the past (R. Keys, 1981): -0.5 is Catmull-Rom, and softer
-// What the filter loses of the past goes with f (1 - f) of the place between pixels: half way between four, half
-// of a frame is worth keeping.
-const float taa_loss = 3.5;
+// What the filter loses of the past goes with f (1 - f) of the place between pixels: half way between four, nine tenths of a
+// frame are worth keeping.
+const float taa_loss = 2.2;
 const float taa_reach = 1.25;  // how far the past may lie off the frame's mean: deviations of the frame's colours,
 const float taa_still_noise = 3.0, taa_moving_noise = 0.5;  // and of samples off the past
 // As far as the frame's own colours are apart: where light changes, samples are off the past, too, and the past must not
@@ -70,19 +69,31 @@ TaaNow taa_now(ivec2 middle, ivec2 limit, vec2 away, float unit, float exponent)
     return now;
 }
 
-vec3 taa_tap(vec2 place, float unit) { return taa_toned(sample_linear(taa_light_before, place).rgb, unit); }
+// Of the six texels along an axis in a Lanczos filter of three lobes (C. Duchon, 1979), fitted by polynomials and with a sum of
+// 1, the weights of the first, second, fifth and last.
+vec4 taa_outer(float f) {
+    float g = 1.0 - f, both = f * g;
+    return both * vec4(0.2182 - 0.2385 * f, (0.1072 * f + 0.5805) * f - 0.8605, (0.1072 * g + 0.5805) * g - 0.8605,
+                        0.2182 - 0.2385 * g);
+}
 
-// A bicubic filter by five taps that are each filtered: what the corners weigh is little.
-vec3 taa_past(vec2 middle, vec2 f, vec2 extent, float unit) {
-    vec2 g = 1.0 - f, before = taa_cubic * f * g * g, behind = taa_cubic * g * f * f, inner = 1.0 - before - behind;
-    vec2 second = (taa_cubic + 2.0) * g * g * g - (taa_cubic + 3.0) * g * g + 1.0;
-    vec2 first_at = (middle - 1.0) / extent, at = (middle + second / inner) / extent, last_at = (middle + 2.0) / extent;
-    vec3 past = taa_tap(at, unit) * (inner.x * inner.y);
-    past += taa_tap(vec2(first_at.x, at.y), unit) * (before.x * inner.y);
-    past += taa_tap(vec2(last_at.x, at.y), unit) * (behind.x * inner.y);
-    past += taa_tap(vec2(at.x, first_at.y), unit) * (before.y * inner.x);
-    past += taa_tap(vec2(at.x, last_at.y), unit) * (behind.y * inner.x);
-    return taa_opponent(past / (inner.x + inner.y - inner.x * inner.y));
+// A cross of nine taps: what lies off the middle of both axes weighs little. The two texels in the middle are one tap. Texels
+// hold what is shown: filtered as light, an edge would move into its dark side with every frame.
+vec3 taa_past(vec2 middle, vec2 f, vec2 extent, float stops) {
+    vec4 x = taa_outer(f.x), y = taa_outer(f.y);
+    vec2 inner = 1.0 - vec2(dot(x, vec4(1.0)), dot(y, vec4(1.0)));
+    vec2 at = (middle + f + 0.1816 * f * (1.0 - f) * (2.0 * f - 1.0)) / extent;
+    vec4 first = sample_linear(taa_shown_before, at);
+    vec3 past = first.rgb * (inner.x * inner.y);
+    for (int i = 0; i < 4; ++i) {
+        vec2 beside = (middle + float(i < 2 ? i - 2 : i)) / extent;
+        past += sample_linear(taa_shown_before, vec2(beside.x, at.y)).rgb * (x[i] * inner.y);
+        past += sample_linear(taa_shown_before, vec2(at.x, beside.y)).rgb * (y[i] * inner.x);
+    }
+    past = clamp(past / (inner.x + inner.y - inner.x * inner.y), 0.0, 1.0);
+    // Under another exposure it was shown as another colour.
+    float most = max(past.r, max(past.g, past.b));
+    return taa_opponent(past / mix(exp2(stops - taa_unpacked_stops(first.a)), 1.0, most));
 }
 
 // Was something else in front of the surface, wherever the past would be read?
@@ -100,8 +111,8 @@ bool taa_was_hidden(ivec2 at, float inverse, vec2 before) {
     return farthest > expected * (1.0 + taa_nearer) + 1e-6;
 }
 
-void shade(Pixel pixel, out vec4 result[2]) {
-    float unit = 1.0 / clamp(load(taa_exposure, ivec2(0)).r, 1e-6, 1e6);
+void shade(Pixel pixel, out vec4 result[3]) {
+    float stops = taa_stops_of(load(taa_exposure, ivec2(0)).r), unit = exp2(stops);
     vec2 output_place = vec2(pixel.texel) + 0.5, place = output_place * custom[0].xy + custom[0].zw;
     ivec2 limit = size(taa_color) - 1, middle = clamp(ivec2(floor(place)), ivec2(0), limit);
 
@@ -131,7 +142,7 @@ void shade(Pixel pixel, out vec4 result[2]) {
                          mix(custom[4].z, custom[4].y, min(frames, 1.0)));
     vec3 color = now.color;
     if (frames > 0.0) {
-        vec3 past = taa_past(middle_before, f, extent, unit), away = past - now.mean;
+        vec3 past = taa_past(middle_before, f, extent, stops), away = past - now.mean;
         // What lies outside the frame's own colours is drawn to their mean (M. Salvi, "An Excursion in Temporal
         // Supersampling", 2016), but for what samples are off the past all the time: parts thinner than a pixel are in one
         // frame and not in the next.
@@ -151,6 +162,8 @@ void shade(Pixel pixel, out vec4 result[2]) {
     noise *= 1.0 - parts * (is_edge ? 1.0 : 1.0 - min(4.0 * length(behind), 1.0));
     noise *= 1.0 - mask.y;  // nor are particles a reason to keep what is off
     float dither = taa_dither(pixel.texel, custom[3].w);
-    result[0] = vec4(taa_rounded(taa_light(color, unit), dither), sample_linear(taa_color, place / vec2(limit + 1)).a);
+    vec3 shown = taa_colors(color);
+    result[0] = vec4(taa_rounded(shown, dither, custom[4].w > 0.5), taa_packed_stops(stops));
     result[1] = vec4(taa_packed(vec2(frames + now.weight, noise), dither), 0.0, 1.0);
+    result[2] = vec4(taa_light(shown, unit), sample_linear(taa_color, place / vec2(limit + 1)).a);
 }

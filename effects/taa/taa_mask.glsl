@@ -12,7 +12,7 @@ float taa_mask_at(ivec2 texel, float unit) {
 }
 
 vec4 shade(Pixel pixel) {
-    float unit = 1.0 / clamp(load(taa_exposure, ivec2(0)).r, 1e-6, 1e6);
+    float unit = exp2(taa_stops_of(load(taa_exposure, ivec2(0)).r));
     ivec2 limit = size(taa_color) - 1;
     float own = 0.0, around = 0.0;
     for (int j = -1; j <= 1; ++j)

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <darkroom/effects/taa.hpp>
 #include <darkroom/reference.hpp>
+#include <numbers>
+#include <numeric>
 
 #include "shared/camera_reference.hpp"
 #include "shared/finite_reference.hpp"
@@ -85,25 +87,54 @@ namespace taa {
 using Toned = std::array<double, 3>;
 
 // The same numbers as in taa_gather.glsl and taa_mask.glsl.
-constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 3.5, reach = 1.25, still_noise = 3,
-                 moving_noise = 0.5, most_noise = 0.5, mask_per_change = 4;
+constexpr double edge = 0.03, nearer = 0.02, loss = 2.2, reach = 1.25, still_noise = 3, moving_noise = 0.5,
+                 most_noise = 0.5, mask_per_change = 4;
+
+/// YCoCg.
+inline Toned opponent(const Rgba& c) {
+    return {c.r / 4 + c.g / 2 + c.b / 4, c.r / 2 - c.b / 2, -c.r / 4 + c.g / 2 - c.b / 4};
+}
 
 inline Toned toned(const Rgba& c, double unit) {
     const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
-    const double r = c.r * scale, g = c.g * scale, b = c.b * scale;
-    return {r / 4 + g / 2 + b / 4, r / 2 - b / 2, -r / 4 + g / 2 - b / 4};
+    return opponent({c.r * scale, c.g * scale, c.b * scale, 1});
 }
 
-inline Rgba light(const Toned& t, double unit, double alpha) {
-    const double r = std::max(t[0] - t[2] + t[1], 0.0), g = std::max(t[0] + t[2], 0.0),
-                 b = std::max(t[0] - t[2] - t[1], 0.0);
-    const double scale = unit / std::max(1 - std::max({r, g, b}), 1e-7);
-    return {std::min(r * scale, 65504.0), std::min(g * scale, 65504.0), std::min(b * scale, 65504.0), alpha};
+inline Rgba shown(const Toned& t) {
+    return {std::max(t[0] - t[2] + t[1], 0.0), std::max(t[0] + t[2], 0.0), std::max(t[0] - t[2] - t[1], 0.0), 1};
+}
+
+inline Rgba light(const Rgba& shown, double unit, double alpha) {
+    const double scale = unit / std::max(1 - std::max({shown.r, shown.g, shown.b}), 1e-7);
+    return {std::min(shown.r * scale, 65504.0), std::min(shown.g * scale, 65504.0), std::min(shown.b * scale, 65504.0),
+            alpha};
+}
+
+/// Of the light that is shown as half of white, in 32nds.
+inline double stops_of(double exposure) {
+    return std::floor(0.5 - 32 * std::log2(std::clamp(exposure, 1e-6, 1e6))) / 32;
 }
 
 inline Toned sum(const Toned& a, const Toned& b, double scale) {
     return {a[0] + b[0] * scale, a[1] + b[1] * scale, a[2] + b[2] * scale};
 }
+
+/// Along an axis, at `f` of the way to the next pixel: a Lanczos filter of three lobes with a sum of 1, whose two
+/// texels in the middle are one filtered tap.
+struct Taps {
+    explicit Taps(double f) {
+        const auto weight = [](double x) {
+            const double p = std::numbers::pi * x;
+            return std::abs(x) < 1e-9 ? 1 : std::abs(x) < 3 ? 3 * std::sin(p) * std::sin(p / 3) / (p * p) : 0;
+        };
+        const double second = weight(f), third = weight(1 - f);
+        weights = {weight(f + 2), weight(f + 1), second + third, weight(2 - f), weight(3 - f)};
+        const double all = std::reduce(weights.begin(), weights.end());
+        for (double& w : weights) w /= all;
+        places[2] = third / (second + third);
+    }
+    std::array<double, 5> weights{}, places{-2, -1, 0, 2, 3};
+};
 
 /// One frame of a sequence.
 class Gather {
@@ -116,8 +147,8 @@ class Gather {
           height_(input.output_height),
           x_scale_(double{1} * picture_.width / width_),
           y_scale_(double{1} * picture_.height / height_),
-          unit_(1 /
-                std::clamp(input.exposure != nullptr ? finite_reference(input.exposure->pixels[0].r) : 1.0, 1e-6, 1e6)),
+          stops_(stops_of(input.exposure != nullptr ? finite_reference(input.exposure->pixels[0].r) : 1.0)),
+          unit_(std::exp2(stops_)),
           camera_(input.camera),
           depth_before_(taa_depth_before(input.camera)),
           motion_(input.camera),
@@ -126,19 +157,27 @@ class Gather {
             const double planar = input.depth->pixels[i].r;
             distance_.pixels[i].r = planar > 0 && planar < 1e9 ? std::min(1 / planar, 65504.0) : 0;
         }
-        if (input.history == nullptr || !input.history->contains("light")) return;
-        light_before_ = &input.history->at("light");
+        if (input.history == nullptr || !input.history->contains("shown")) return;
+        shown_before_ = &input.history->at("shown");
         kept_before_ = &input.history->at("kept");
         distance_before_ = &input.history->at("distance");
-        if (light_before_->width != width_ || light_before_->height != height_) light_before_ = nullptr;
+        if (shown_before_->width != width_ || shown_before_->height != height_) shown_before_ = nullptr;
     }
 
     ReferenceImage run() {
-        ReferenceImage light_now(width_, height_), kept(width_, height_);
+        ReferenceImage light_now(width_, height_), shown_now(width_, height_), kept(width_, height_);
         for (std::uint32_t y = 0; y < height_; ++y)
-            for (std::uint32_t x = 0; x < width_; ++x) gather(x, y, light_now.at(x, y), kept.at(x, y));
+            for (std::uint32_t x = 0; x < width_; ++x) {
+                Rgba& now = shown_now.at(x, y);
+                now = gather(x, y, kept.at(x, y));
+                const double alpha = sample_reference(picture_, ((x + 0.5) * x_scale_ + jitter(0)) / picture_.width,
+                                                      ((y + 0.5) * y_scale_ + jitter(1)) / picture_.height)
+                                         .a;
+                light_now.at(x, y) = light(now, unit_, alpha);
+                now.a = stops_;
+            }
         if (input_.history != nullptr) {
-            (*input_.history)["light"] = light_now;
+            (*input_.history)["shown"] = shown_now;
             (*input_.history)["kept"] = kept;
             (*input_.history)["distance"] = distance_;
         }
@@ -181,28 +220,24 @@ class Gather {
     }
 
     Toned past(double x, double y) const {
-        const auto of_axis = [](double f) {
-            const double g = 1 - f, first = cubic * f * g * g, last = cubic * g * f * f;
-            const double third = (cubic + 2) * g * g * g - (cubic + 3) * g * g + 1;
-            return std::array{first, 1 - first - third - last, third, last};
-        };
         const double mx = std::floor(x - 0.5) + 0.5, my = std::floor(y - 0.5) + 0.5;
-        const auto wx = of_axis(x - mx), wy = of_axis(y - my);
-        // The two in the middle are one filtered tap.
-        const std::array at_x{mx - 1, mx + wx[2] / (wx[1] + wx[2]), mx + 2},
-            at_y{my - 1, my + wy[2] / (wy[1] + wy[2]), my + 2};
-        const std::array of_x{wx[0], wx[1] + wx[2], wx[3]}, of_y{wy[0], wy[1] + wy[2], wy[3]};
-        Toned out{};
-        double weights = 0;
-        for (std::size_t j = 0; j < 3; ++j)
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (i != 1 && j != 1) continue;  // corners weigh little
-                const double weight = of_x[i] * of_y[j];
-                out = sum(out, toned(sample_reference(*light_before_, at_x[i] / width_, at_y[j] / height_), unit_),
-                          weight);
+        const Taps of_x(x - mx), of_y(y - my);
+        std::array<double, 3> color{};
+        double weights = 0, stops = 0;
+        for (std::size_t j = 0; j < 5; ++j)
+            for (std::size_t i = 0; i < 5; ++i) {
+                if (i != 2 && j != 2) continue;  // what lies off the middle of both axes weighs little
+                const double weight = of_x.weights[i] * of_y.weights[j];
+                const Rgba tap =
+                    sample_reference(*shown_before_, (mx + of_x.places[i]) / width_, (my + of_y.places[j]) / height_);
+                color = sum(color, {tap.r, tap.g, tap.b}, weight);
                 weights += weight;
+                stops = tap.a;
             }
-        return sum({}, out, 1 / weights);
+        for (double& c : color) c = std::clamp(c / weights, 0.0, 1.0);
+        // Under another exposure it was shown as another colour.
+        const double scale = 1 / std::lerp(std::exp2(stops_ - stops), 1.0, std::max({color[0], color[1], color[2]}));
+        return opponent({color[0] * scale, color[1] * scale, color[2] * scale, 1});
     }
 
     bool was_hidden(std::int64_t i, std::int64_t j, double inverse, double x, double y) const {
@@ -258,7 +293,7 @@ class Gather {
         return {r * scale, g * scale, b * scale, 1};
     }
 
-    void gather(std::uint32_t x, std::uint32_t y, Rgba& out, Rgba& kept) const {
+    Rgba gather(std::uint32_t x, std::uint32_t y, Rgba& kept) const {
         const double px = (x + 0.5) * x_scale_ + jitter(0), py = (y + 0.5) * y_scale_ + jitter(1);
         const auto inside = [](double v, std::uint32_t n) {
             return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(v)), 0, std::int64_t{n} - 1);
@@ -283,7 +318,7 @@ class Gather {
         const double bx = x + 0.5 + moved[0], by = y + 0.5 + moved[1];
         const double fx = bx - 0.5 - std::floor(bx - 0.5), fy = by - 0.5 - std::floor(by - 0.5);
         double frames = 0, noise = 0, around = 0;
-        const bool has_past = light_before_ != nullptr && bx > 0 && by > 0 && bx < width_ && by < height_;
+        const bool has_past = shown_before_ != nullptr && bx > 0 && by > 0 && bx < width_ && by < height_;
         if (has_past && !was_hidden(at_i, at_j, inverse, bx * x_scale_ + double{input_.camera.previous_jitter[0]},
                                     by * y_scale_ + double{input_.camera.previous_jitter[1]})) {
             const Rgba before = sample_reference(*kept_before_, bx / width_, by / height_);
@@ -318,7 +353,7 @@ class Gather {
         noise *= 1 - around;
         // Roots, as the device keeps and filters them.
         kept = {std::sqrt(std::clamp((frames + frame.weight) / 128, 0.0, 1.0)), std::sqrt(std::min(noise, 1.0)), 0, 1};
-        out = light(color, unit_, sample_reference(picture_, px / picture_.width, py / picture_.height).a);
+        return taa::shown(color);
     }
 
     const Taa& taa_;
@@ -327,12 +362,12 @@ class Gather {
     std::uint32_t width_, height_;
     double x_scale_, y_scale_;  ///< pixels of the frame a pixel of the output
     TaaExponents exponents_{1 / std::sqrt(x_scale_ * y_scale_)};
-    double unit_;
+    double stops_, unit_;
     Camera camera_;
     TaaDepthBefore depth_before_;
     TaaMotion motion_;
     ReferenceImage distance_;  ///< inverse, 0 of the sky
-    const ReferenceImage *light_before_ = nullptr, *kept_before_ = nullptr, *distance_before_ = nullptr;
+    const ReferenceImage *shown_before_ = nullptr, *kept_before_ = nullptr, *distance_before_ = nullptr;
 };
 
 /// taa_sharpen.glsl.

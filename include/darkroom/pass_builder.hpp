@@ -154,6 +154,8 @@ class PassBuilder {
     /// Are passes that write this format, or add to it, compute kernels here? They round the packed floats of 11 and 10
     /// bits, which drivers may cut off; blending does as the driver likes.
     [[nodiscard]] virtual bool is_stored(VkFormat) const { return false; }
+    /// Can passes write this format here?
+    [[nodiscard]] virtual bool is_written(VkFormat) const { return true; }
     /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view
     /// wrote, zero after a cut or a frame in which the effect was off,
     /// and resampled where the frame has another extent.

@@ -78,6 +78,10 @@ bool Builder::is_stored(VkFormat format) const {
     return stage && *stage == gpu::Stage::Compute;
 }
 
+bool Builder::is_written(VkFormat format) const {
+    return planner_.traits_.stage_of({.name = "", .outputs = {format}}).has_value();
+}
+
 PassBuilder::History Builder::history(const PassImageDesc& desc) {
     const graph::ImageDesc image = image_desc(desc);
     auto& entries = planner_.program_.history_entries;

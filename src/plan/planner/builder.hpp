@@ -43,6 +43,7 @@ class Builder final : public PassBuilder {
     }
     std::vector<PassImage> add_all(const KernelPassDesc& desc) override;
     [[nodiscard]] ComputeLimits compute_limits() const override { return planner_.traits_.compute; }
+    [[nodiscard]] bool is_written(VkFormat format) const override;
     [[nodiscard]] bool tiles_pay(VkFormat format, const ComputeLimits& asked) override;
     [[nodiscard]] PassBuffer create_buffer(std::string_view name, std::uint32_t bytes) override;
     [[nodiscard]] PassBuffer value(std::string_view name, std::uint32_t numbers) override;
