@@ -2,6 +2,8 @@
 // What pages tell one to type is typed, in the order of the page. What opens a window is typed where there is no
 // display, so it ends behind the reading of its flags and files. What asks other programs or works for minutes is run
 // by tests of its own. Pictures are small: they tell as much.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <darkroom/effects.hpp>
 #include <map>
@@ -64,7 +66,14 @@ std::vector<std::string> pages_of_docs() {
     return out;
 }
 
-// Of a few frames and pixels, in place of those that the line asks for.
+std::vector<std::string> pages_of_effects() {
+    std::vector<std::string> out;
+    for (const EffectInfo* const effect : all_effects())
+        if (effect != nullptr) out.push_back(fmt::format("effects/{0}/{0}.md", effect->name));
+    return out;
+}
+
+// Of a few frames, pixels and seconds, in place of those that the line asks for.
 constexpr std::string_view small_program = R"(#!/usr/bin/env bash
 words=()
 while (($#)); do
@@ -72,12 +81,15 @@ while (($#)); do
         --size) [[ ${words[0]} == render ]] && words+=(--size 64x36) || words+=("$1" "$2"); shift ;;
         --output-size) words+=("$1" 64x36) && shift ;;
         --frames | --truth-frames) words+=("$1" 0-1) && shift ;;
+        --seconds) words+=("$1" 1) && shift ;;
+        --device) words+=("$1" 0) && shift ;;
         *) words+=("$1") ;;
     esac
     shift
 done
 [[ ${words[0]} != render || " ${words[*]} " == *" --size "* ]] || words+=(--size 64x36)
 [[ ${words[0]} != capture ]] || words+=(--size 64x36 --samples 2)
+[[ ${words[0]} != verify || " ${words[*]} " == *" --seconds "* ]] || words+=(--seconds 1)
 exec )";
 
 class CliPages : public test::CliFixture {
@@ -153,8 +165,11 @@ TEST_F(CliPages, TomlAndGlslAreRead) {
     fs::copy_file(path("my.toml"), path("own/cave.toml"));
     fs::copy_file(fs::path(test::source_folder) / "examples/duotone.glsl", path("own/duotone.glsl"));
     std::size_t looks = 0, events = 0, effects = 0;
+    std::vector<std::string> pages = pages_of_effects();
     for (const char* const page : {"README.md", "docs/tutorial.md", "docs/looks.md", "docs/interface.md",
                                    "docs/custom_effects.md", "docs/embedding.md"})
+        pages.emplace_back(page);
+    for (const std::string& page : pages)
         for (const auto& [kind, text] : blocks_of_page(page)) {
             test::Outcome outcome{.code = 0};
             if (kind == "toml" && text.starts_with("[[event]]")) {
@@ -170,12 +185,18 @@ TEST_F(CliPages, TomlAndGlslAreRead) {
             } else if (kind == "glsl" && text.starts_with("// @effect") && text.find("...") == std::string::npos) {
                 ++effects;
                 outcome = run({"effects", write("page.glsl", text)});
+            } else if (kind == "glsl" && text.starts_with("// @table")) {
+                // A description without what it describes.
+                ++effects;
+                outcome = run({"effects", write("page.glsl", "// @effect page: Shows a table.\n" + text +
+                                                                 "vec4 page(vec4 color, Pixel pixel, Page parameters) "
+                                                                 "{ return color * load(weights, ivec2(0)).r; }\n")});
             }
             EXPECT_EQ(outcome.code, 0) << page << ":\n" << text << outcome.err;
         }
-    EXPECT_GE(looks, 8U);
+    EXPECT_GE(looks, 10U);
     EXPECT_GE(events, 2U);
-    EXPECT_GE(effects, 2U);
+    EXPECT_GE(effects, 3U);
     std::string scene;
     for (const auto& [kind, text] : blocks_of_page("docs/scenes.md"))
         if (kind == "toml") scene += text;
@@ -190,6 +211,38 @@ TEST_F(CliPages, LooksScenesAndProbing) {
     try_page("docs/looks.md", 1);
     try_page("docs/scenes.md", 2);
     try_page("docs/probe.md", 2);
+}
+TEST_F(CliPages, Effects) {
+    for (const auto& [kind, text] : blocks_of_page("effects/upscale/upscale.md"))
+        if (kind == "toml") write("sharp.toml", "format = 1\n" + text);
+    for (const std::string& page : pages_of_effects()) try_page(page, 0);
+    EXPECT_TRUE(fs::exists(path("lens.png")));
+}
+TEST_F(CliPages, Verify) {
+    if (!fs::exists(fs::path(program).parent_path().parent_path() / "lib/darkroom/darkroom_verify"))
+        GTEST_SKIP() << "darkroom_verify is not built";
+    // A folder as a finding would leave it: there is none on a driver that is right.
+    const fs::path finding = path("verified/01_ssao_compute_lean");
+    fs::create_directories(finding);
+    fs::copy_file(path("a.exr"), finding / "frame.0002.exr");
+    write("verified/01_ssao_compute_lean/look.toml", "format = 1\n[[stack]]\neffect = \"ssao\"\n");
+    try_page("docs/verify.md", 4);
+    for (const char* const name : {"verified/verify.json", "ssao.json", "made.exr"})
+        EXPECT_TRUE(fs::exists(path(name))) << name;
+}
+TEST_F(CliPages, WhatTheySayIsPrinted) {
+    const auto shown = [](const std::string& page, std::string_view part) {
+        for (const PageBlock& block : blocks_of_page(page))
+            if (block.text.starts_with("darkroom: ") && block.text.find(part) != std::string::npos) return block.text;
+        ADD_FAILURE() << page << " shows no " << part;
+        return std::string();
+    };
+    write("my.toml", "format = 1\n\n[post_process]\nbloom_intensity = -1\n");
+    const std::string refused = run_lines("darkroom develop a.exr --look my.toml --strict -o a.png").err;
+    EXPECT_EQ(shown("docs/errors.md", "my.toml"), refused);
+    EXPECT_EQ(shown("docs/troubleshooting.md", "my.toml"), refused);
+    write("my.toml", "[post_process]\nbloom_intensty = 0.1\nexposure = -2\n");
+    EXPECT_EQ(shown("docs/looks.md", "unknown key"), run_lines("darkroom develop a.exr --look my.toml -o a.png").err);
 }
 // Lines that no test types, such as those for another machine, at least have no flag that their command does not know,
 // and name no file of the tree that is not there.

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Every file of python/examples, as a user runs it, in an empty folder and in this interpreter."""
+"""Every file of python/examples, as a user runs it, in an empty folder and in this interpreter; and the code of the page."""
 
 import contextlib
 import io
 import os
+import re
 import runpy
 import sys
 import tempfile
 import unittest
 
-from support import Case, source
+import numpy
+
+from support import Case, light, source
 
 folder = source / "python" / "examples"
 
@@ -31,6 +34,22 @@ class Examples(Case):
                 os.chdir(was)
                 sys.argv = arguments
         self.assertTrue(out.getvalue().strip(), "it says nothing")
+
+
+class Page(Case):
+    def test_its_code_runs(self):
+        blocks = re.findall(r"^```python\n(.*?)^```", (source / "docs/python.md").read_text(encoding="utf-8"), re.M | re.S)
+        self.assertGreaterEqual(len(blocks), 1)
+        was = os.getcwd()
+        try:
+            os.chdir(source)
+            for block in blocks:
+                names = {"frames": [light(), light()], "array": light()}
+                exec(compile(block, "docs/python.md", "exec"), names)
+                self.assertEqual(names["picture"].dtype, numpy.uint8)
+                self.assertEqual(names["glowing"].shape, light().shape)
+        finally:
+            os.chdir(was)
 
 
 def _test(path):

@@ -13,6 +13,9 @@ COMPILED = ("README.md", "docs/embedding.md", "docs/interface.md", "docs/looks.m
 QUOTED = (("docs/embedding.md", "darkroom::Device device = check(", "examples/embed.cpp"),
           ("docs/embedding.md", "// Darkroom is told how the images are", "examples/embed.cpp"),
           ("docs/embedding.md", "// @effect duotone", "examples/duotone.glsl"),
+          ("docs/custom_effects.md", "// @effect two_pass_blur", "examples/two_pass_blur.glsl"),
+          ("docs/custom_effects.md", "// @effect histogram", "examples/histogram.glsl"),
+          ("docs/custom_effects.md", "// @history trail", "examples/feedback_trail.glsl"),
           ("docs/tutorial.md", "struct Negative", "effects/negative/negative.hpp"),
           ("docs/tutorial.md", "constexpr auto negative_rows", "effects/negative/negative.cpp"),
           ("docs/tutorial.md", "vec4 negative", "effects/negative/negative.glsl"),
@@ -96,6 +99,16 @@ def bare(text):
     return re.sub(r"\s+", "", re.sub(r"//.*", "", text))
 
 
+def is_quoted(text, source):
+    """Whether a file has what a page quotes; where the page leaves bodies out, its lines stand there in their order."""
+    if "{ ... }" not in text:
+        return bare(text) in bare(source)
+    lines = iter(line.strip() for line in source.splitlines())
+    wanted = [line.strip() for line in text.splitlines() if line.strip() and not line.startswith("// ...")]
+    return all(any(line == want or line.startswith(want.removesuffix(" ... }")) and want.endswith(" ... }") for line in lines)
+               for want in wanted)
+
+
 def wrong_of(compiler, flags, folders, code):
     """What a compiler says of the code, if anything."""
     includes = [word for folder in folders for word in ("-I", folder)]
@@ -124,7 +137,7 @@ def main():
     wrong = []
     for page, begin, source in QUOTED:
         quoted = [text for _, text in blocks_of(tree / page) if text.startswith(begin)]
-        if not quoted or bare(quoted[0]) not in bare((tree / source).read_text()):
+        if not quoted or not is_quoted(quoted[0], (tree / source).read_text()):
             wrong.append(f"{page}: what begins with '{begin}' does not stand in {source}\n")
     folders = [f"{tree}/include", f"{generated}/include"]
     in_cpp = [block for page in COMPILED for block in functions_of(tree, page, "cpp")]

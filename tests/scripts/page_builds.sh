@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# page_builds.sh TREE BUILD: the pages on installing and embedding, as they are written. The lines of docs/install.md that
+# install are run, below a folder of the test; the CMake blocks of all pages then find what lies there, and build a program
+# each; the lines with pkg-config build two more. Of lines that build Darkroom itself or install packages, presets, targets,
+# options and packages are looked up.
+set -euo pipefail
+tree=$1 build=$2
+fail() {
+    printf 'page_builds: %s\n' "$*"
+    exit 1
+}
+work=$(mktemp -d)
+# What was installed from here before stays known to the target uninstall.
+mkdir "$work/lists"
+cp "$build"/install_manifest*.txt "$work/lists/" 2>/dev/null || true
+trap 'rm -f "$build"/install_manifest*.txt; cp "$work/lists/"* "$build/" 2>/dev/null || true; rm -rf "$work"' EXIT
+quietly() { "$@" >"$work/log" 2>&1 || { tail -n 40 "$work/log" && fail "$* fails"; }; }
+
+# lines_of KIND PAGE...: what the blocks of this kind hold, a line that ends in a backslash joined to the next
+lines_of() {
+    local kind=$1
+    shift
+    (cd "$tree" && awk -v kind="$kind" '/^```/ { inside = $0 == "```" kind; next } inside' "$@") | sed -e :a -e '/\\$/N; s/\\\n//; ta'
+}
+
+# Lines that install, in their order; the last one removes again, below.
+ln -s "$build" "$work/build"
+installed=0
+while IFS= read -r line; do
+    line=${line#sudo }
+    [[ $line == 'cmake --install '* ]] || continue
+    (cd "$work" && HOME=/home DESTDIR=$work/stage quietly bash -c "${line%% #*}")
+    installed=$((installed + 1))
+done < <(lines_of sh docs/install.md)
+[[ $installed -ge 3 ]] || fail "docs/install.md has $installed lines that install"
+for program in usr/local/bin home/.local/bin; do
+    [[ -x $work/stage/$program/darkroom ]] || fail "docs/install.md installs nothing in /$program"
+done
+prefix=$work/stage/opt/darkroom
+
+# A folder for each CMake block.
+mkdir -p "$work/project/looks"
+cp "$tree"/tests/package/looks/*.toml "$work/project/looks/"
+printf '#include <darkroom/darkroom.hpp>\nint main() { return darkroom::all_effects().empty() ? 1 : 0; }\n' >"$work/project/main.cpp"
+cp "$tree/tests/package/main.c" "$work/project/"
+cd "$work/project"
+{
+    printf 'cmake_minimum_required(VERSION 3.25)\nproject(pages LANGUAGES C CXX)\n'
+    for page in install embedding c; do
+        awk -v page="$page" '/^```/ { inside = $0 == "```cmake"; number += inside; next }
+            inside { print > (page "_" number ".txt") }' "$tree/docs/$page.md"
+    done
+} >CMakeLists.txt
+for block in install_*.txt embedding_*.txt c_*.txt; do
+    name=${block%.txt}
+    mkdir "$name"
+    ln -s ../looks "$name/looks"
+    source=main.cpp
+    [[ $name != c_* ]] || source=main.c
+    {
+        printf 'add_executable(%s ../%s)\n' "$name" "$source"
+        sed "s|/opt/darkroom|$prefix|; s/\bengine\b/$name/" "$block"
+        # What follows in the page presumes what its first block says.
+        grep -q target_link_libraries "$block" || printf 'target_link_libraries(%s PRIVATE Darkroom::darkroom)\n' "$name"
+    } >"$name/CMakeLists.txt"
+    printf 'add_subdirectory(%s)\n' "$name" >>CMakeLists.txt
+done
+# darkroom_bake looks for the program in the library's folders, then in PATH.
+quietly env CXXFLAGS=-O0 PATH="$work/stage/home/.local/bin:$PATH" cmake -S . -B out -G Ninja
+quietly cmake --build out
+for name in install_1 embedding_1 embedding_2 c_1; do
+    quietly "out/$name/$name"
+done
+[[ -s out/embedding_2/embedding_2.dkb ]] || fail "docs/embedding.md: darkroom_bake made nothing"
+
+# And by pkg-config.
+lines_of sh docs/install.md | grep -E '^(export PKG_CONFIG_PATH|c\+\+|cc) ' >lines || fail "docs/install.md has no pkg-config"
+[[ $(wc -l <lines) == 3 ]] || fail "docs/install.md: other lines of pkg-config than three"
+sed -i "s|/opt/darkroom|$prefix|; /^c/s/ *#.*//; s/^c++ /c++ -O0 -o by_cpp /; s/^cc /cc -o by_c /" lines
+quietly bash -e lines
+export LD_LIBRARY_PATH=$prefix/lib
+quietly ./by_cpp
+quietly ./by_c
+
+# Removed again: what was installed last.
+DESTDIR=$work/stage quietly bash -c "cd '$work' && $(lines_of sh docs/install.md | grep -- '--target uninstall')"
+[[ ! -e $prefix/include ]] || fail "docs/install.md: uninstall leaves $prefix/include"
+
+# What is not run.
+all=$(cd "$tree" && cat README.md docs/*.md)
+named=0
+while IFS= read -r option; do
+    named=$((named + 1))
+    grep -rqE "\b$option\b" "$tree/CMakeLists.txt" "$tree/cmake" || fail "pages name the option $option, which CMake does not know"
+done < <(grep -oE -- '-DDARKROOM_[A-Z_]+' <<<"$all" | cut -c3- | sort -u)
+targets=$(cmake --build "$build" --target help | sed 's/:.*//')
+while IFS= read -r target; do
+    named=$((named + 1))
+    grep -qxF -- "$target" <<<"$targets" || fail "pages name the target $target, which is not there"
+done < <(lines_of sh $(cd "$tree" && echo README.md docs/*.md) | grep -oE -- '--target( [a-z][a-z_]+)+' | tr ' ' '\n' | grep '^[a-z]' | sort -u)
+# Without lists of packages nothing is known of any.
+if apt-cache show bash >/dev/null 2>&1; then
+    while IFS= read -r package; do
+        named=$((named + 1))
+        apt-cache show "$package" >/dev/null 2>&1 || fail "pages name the package $package, which Debian does not have"
+    done < <(lines_of sh $(cd "$tree" && echo README.md docs/*.md) | sed -nE 's/^sudo apt-get install //p' | tr ' ' '\n' | sort -u)
+fi
+lines_of sh docs/python.md | grep -q -- "$(grep -oE 'pip wheel( -q)? --no-build-isolation --no-deps' "$tree/tests/scripts/python.sh" | sed 's/ -q//')" ||
+    fail "docs/python.md makes its wheel otherwise than tests/scripts/python.sh"
+[[ $named -ge 10 ]] || fail "pages name $named options, targets and packages"
+echo "page_builds: $installed lines install, $(ls -d install_?/ embedding_?/ c_?/ | wc -l) blocks of CMake build, $named names are there"
