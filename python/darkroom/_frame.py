@@ -160,8 +160,10 @@ class Frame:
     uint8 are code values of sRGB. depth: distance along the view axis; 1e9 and more is sky. normals: x, y, z in world
     space. velocity: x, y, the previous position minus the present one, in pixels, y down. reactive: 0 to 1.
     transparency: the colour before anything transparent was drawn. exposure: a number, what light is multiplied by.
-    ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. lights: darkroom.Light of each. time: seconds; None: that of the
-    frame's place in its sequence.
+    ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. lights: darkroom.Light of each. time:
+    seconds; None: that of the frame's place in its sequence. fire: an event, or several, that start pulses of the look
+    with this frame of a sequence. layer_weights: 0 to 1 by name, of layers of the look in this frame; others have the
+    weight that the look says.
     """
 
     color: object
@@ -177,6 +179,8 @@ class Frame:
     time: float | None = None
     delta_time: float | None = None
     frame_index: int | None = None
+    fire: str | list | tuple = ()
+    layer_weights: dict = dataclasses.field(default_factory=dict)
 
     def _described(self, camera, time, delta_time, frame_index):
         """What the engine takes; `camera` as Camera._described has it."""
@@ -187,6 +191,8 @@ class Frame:
             "time": float(time if self.time is None else self.time),
             "delta_time": float(delta_time if self.delta_time is None else self.delta_time),
             "frame_index": int(frame_index if self.frame_index is None else self.frame_index),
+            "fire": [self.fire] if isinstance(self.fire, str) else list(self.fire),
+            "layer_weights": {name: float(weight) for name, weight in self.layer_weights.items()},
         }
         if self.exposure is not None:
             out["exposure"] = float(self.exposure)

@@ -199,6 +199,8 @@ def with_layers(frame, layers):
 
 
 def develop_one(runner, look, frame):
+    if frame.fire:
+        raise Error(f"fire = {frame.fire!r}: a picture by itself has no time in which a pulse dies down: use sequence")
     camera = frame.camera or Camera()
     described = camera._described(*size_of(frame.color), None)
     described["is_cut"] = True

@@ -94,10 +94,13 @@ class Frame:
     time: float | None
     delta_time: float | None
     frame_index: int | None
+    fire: str | Sequence[str]
+    layer_weights: dict[str, float]
     def __init__(self, color: Any, depth: Any = None, normals: Any = None, velocity: Any = None, reactive: Any = None,
                  transparency: Any = None, ui: Any = None, exposure: float | None = None,
                  camera: Camera | None = None, lights: Sequence[Light] = (), time: float | None = None, delta_time: float | None = None,
-                 frame_index: int | None = None) -> None: ...
+                 frame_index: int | None = None, fire: str | Sequence[str] = (),
+                 layer_weights: dict[str, float] = ...) -> None: ...
 
 class Comparison:
     flip_mean: float

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include "arrays.hpp"
+#include "core/text/param_text.hpp"
 #include "error.hpp"
 
 namespace darkroom::python {
@@ -69,6 +71,7 @@ struct FrameArrays {
     std::vector<Layer> kept;
     std::vector<ReferenceLight> lights;
     DevelopInput input;
+    Moves moves;
     float exposure = 1;
 
     Layer add(const py::object& object, const LayerRules& rules, VkExtent2D extent) {
@@ -114,6 +117,8 @@ FrameArrays arrays_of(const py::dict& frame, VkExtent2D target_extent) {
     input.time = frame["time"].cast<double>();
     input.delta_time = frame["delta_time"].cast<double>();
     input.frame_index = frame["frame_index"].cast<std::uint64_t>();
+    out.moves = {.fire = frame["fire"].cast<std::vector<std::string>>(),
+                 .layer_weights = frame["layer_weights"].cast<std::map<std::string, float>>()};
     return out;
 }
 
@@ -180,8 +185,32 @@ Result<> Runner::follow(const EditedLook& edits) {
     return {};
 }
 
-Result<> Runner::submit_locked(const EditedLook& edits, const DevelopInput& input) {
+Result<> Runner::move(const Moves& moves) {
+    for (const std::string& event : moves.fire) {
+        std::vector<std::string> events;
+        for (const LookPulse& pulse : look_.pulses) events.push_back(pulse.event);
+        if (std::ranges::count(events, event) == 0)
+            return user_error(fmt::format("fire = \"{}\": no pulse of {} has this event{}", printable(event),
+                                          look_.shown_name, alternatives(event, events, "there are")));
+    }
+    std::vector<std::string> names;
+    for (const LookLayer& layer : look_.layers) names.push_back(layer.name);
+    for (const auto& [name, weight] : moves.layer_weights)
+        if (std::ranges::count(names, name) == 0)
+            return user_error(fmt::format("layer_weights: {} has no layer '{}'{}", look_.shown_name, printable(name),
+                                          alternatives(name, names, "it has")));
+    for (const LookLayer& layer : look_.layers) {
+        const auto given = moves.layer_weights.find(layer.name);
+        const float weight = given == moves.layer_weights.end() ? layer.state.weight : given->second;
+        if (Result<> set = composer_->set_layer_weight(layer.name, weight); !set) return set;
+    }
+    for (const std::string& event : moves.fire) composer_->fire(event);
+    return {};
+}
+
+Result<> Runner::submit_locked(const EditedLook& edits, const DevelopInput& input, const Moves& moves) {
     if (Result<> done = follow(edits); !done) return done;
+    if (Result<> moved = move(moves); !moved) return moved;
     return developer_->submit(*composer_, input);
 }
 
@@ -202,7 +231,7 @@ void Runner::submit(const EditedLook& edits, const py::dict& frame) {
     {
         const py::gil_scoped_release others_run;
         const std::lock_guard lock(mutex_);
-        done = submit_locked(kept, arrays.input);
+        done = submit_locked(kept, arrays.input, arrays.moves);
     }
     must(done);
     channels_.push_back(arrays.input.color_channels);
@@ -227,7 +256,7 @@ py::array Runner::develop(const EditedLook& edits, const py::dict& frame) {
     Result<DevelopedPicture> picture = [&]() -> Result<DevelopedPicture> {
         const py::gil_scoped_release others_run;
         const std::lock_guard lock(mutex_);
-        if (Result<> done = submit_locked(kept, arrays.input); !done) return failure(done.error());
+        if (Result<> done = submit_locked(kept, arrays.input, arrays.moves); !done) return failure(done.error());
         return finish_locked();
     }();
     return array_of_picture(must(std::move(picture)), arrays.input.color_channels);

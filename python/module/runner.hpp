@@ -5,10 +5,12 @@
 #include <pybind11/numpy.h>
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "develop/developer.hpp"
 #include "parts.hpp"
@@ -16,6 +18,12 @@
 namespace darkroom::python {
 
 [[nodiscard]] std::shared_ptr<Device> create_device(const std::string& select, bool validate);
+
+/// What a frame says of the look's pulses and layers.
+struct Moves {
+    std::vector<std::string> fire;               ///< events
+    std::map<std::string, float> layer_weights;  ///< in this frame; others are the look's
+};
 
 class Runner {
   public:
@@ -36,7 +44,8 @@ class Runner {
 
   private:
     [[nodiscard]] Result<> follow(const EditedLook& edits);
-    [[nodiscard]] Result<> submit_locked(const EditedLook& edits, const DevelopInput& input);
+    [[nodiscard]] Result<> move(const Moves& moves);
+    [[nodiscard]] Result<> submit_locked(const EditedLook& edits, const DevelopInput& input, const Moves& moves);
     [[nodiscard]] Result<DevelopedPicture> finish_locked();
 
     std::mutex mutex_;  // taken without the interpreter's lock, which is never waited for behind it

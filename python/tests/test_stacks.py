@@ -5,6 +5,7 @@ import ast
 import inspect
 import os
 import pathlib
+import re
 import tempfile
 import unittest
 import unittest.mock
@@ -135,6 +136,44 @@ class Sequences(Case):
         self.assertEqual(seen[:2], [1.0, 1.0])
         self.assertIn(3.0, seen)
         self.assertGreater(seen[-1], 3.0)
+
+    def test_events_fire_pulses_and_layers_have_weights(self):
+        stack = darkroom.Stack.parse(
+            """
+            format = 1
+            [[stack]]
+            effect = "exposure"
+            exposure = 1.0
+            [[pulse]]
+            event = "hit"
+            parameter = "exposure.exposure"
+            amount = 1.0
+            duration = 0.4
+            [[layer]]
+            name = "cave"
+            values = { "exposure.exposure" = 4.0 }
+            """
+        )
+        ones = numpy.ones((6, 8, 3), numpy.float32)
+
+        def means(*frames):
+            return [float(one.mean()) for one in stack.sequence([{"color": ones, **f} for f in frames], fps=10, output="linear")]
+
+        # Linear: from 1 to 0 in 0.4 s.
+        numpy.testing.assert_allclose(means({}, {"fire": "hit"}, {}, {}, {}, {}), [1, 2, 1.75, 1.5, 1.25, 1], rtol=1e-3)
+        self.assertEqual(means({}, {}), [1, 1])
+        numpy.testing.assert_allclose(means({}, {"layer_weights": {"cave": 1}}, {}), [1, 4, 1], rtol=1e-3)
+        self.assertEqual(stack.develop(ones, output="linear", layer_weights={"cave": 1}).mean(), 4)
+        self.assertEqual(stack.develop(ones, output="linear").mean(), 1)
+        for wrong, text in (
+            ({"fire": ["hit", "hti"]}, 'fire = "hti": no pulse of look has this event'),
+            ({"layer_weights": {"cve": 1}}, "layer_weights: look has no layer 'cve'"),
+            ({"layer_weights": {"cave": 2}}, "allowed is"),
+        ):
+            with self.assertRaisesRegex(darkroom.Error, re.escape(text)):
+                means({}, wrong)
+        with self.assertRaisesRegex(darkroom.Error, "^fire = 'hit': a picture by itself has no time"):
+            stack.develop(ones, fire="hit")
 
     def test_time_and_camera_go_on(self):
         taken = []
