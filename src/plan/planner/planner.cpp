@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The planner: walks the stack in the user's order, keeps a kernel open as long as the next entry may join it, and says
-// why a new one starts. See architecture.md, ideas 3 and 4.
+// why a new one starts. See architecture.md, Fusion.
 
 #include <fmt/format.h>
 
