@@ -42,7 +42,7 @@ BloomTaps bloom_taps_of(int from, ivec2 texel, ivec2 source) {
                      bloom_inner(from, place - right, rows) + bloom_inner(from, place + right, rows));
 }
 
-// Of a pixel and the one to its right. Loops keep the text's SPIR-V small; compilers of GPUs unroll them.
+// Taps of a pixel and of the one to its right, which share two columns of outer taps.
 BloomTaps[2] bloom_taps_of_pair(int from, ivec2 texel, ivec2 source) {
     vec2 place = vec2(2 * texel + 1), rows = bloom_rows(source);
     BloomColumn outer[4];

@@ -2,7 +2,7 @@
 #ifndef SHARED_SANITIZE_GLSL
 #define SHARED_SANITIZE_GLSL
 // What filters do with numbers that would spread over everything they touch: NaN becomes 0, and the rest stays within the
-// finite range of half precision. Bits are tested, since compilers may assume that isnan() is false.
+// finite range of half precision. It tests bits, because GLSL does not promise that isnan() finds a NaN.
 
 vec4 sanitize(vec4 value) {
     uvec4 magnitude = floatBitsToUint(value) & 0x7fffffffu;

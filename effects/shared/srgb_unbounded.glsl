@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // IEC 61966-2-1 both ways, the power going on above 1 and the line below 0: for light that is encoded only in between.
-// Precise, because a compiler that sees both may fold them, and lean kernels let it see more.
+// Precise, so that lean kernels, which see both next to each other, give the bits of complete ones.
 #ifndef SHARED_SRGB_UNBOUNDED
 #define SHARED_SRGB_UNBOUNDED
 vec3 srgb_encode_unbounded(vec3 linear) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Occlusion of one pixel by the method that is chosen. Method and number of samples are literals in all but the first
-// frames, so that the compiler folds what follows from them alone, points of the kernel or directions, into the unrolled
-// loops. Of custom:
+// Occlusion of one pixel by the chosen method. Method and number of samples are literals in all but the first frames, and
+// with them the points of the kernel, or the directions. Of custom:
 //     [0], [1]  view position of a texel: xy = (texel * [0].xy + [0].zw) * planar + texel * [1].xy + [1].zw
 //     [2], [3]  texel of a view position: (xy * [2].xy + z * [2].zw + [3].xy) / (z * [3].z + [3].w) + [4].xy
 //     [4].zw    just below the number of texels
