@@ -73,7 +73,7 @@ Result<> Viewer::open() {
     if (Result<> done = open_views(); !done) return done;
     if (EditPanels* const panels = screen_.editor())
         panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(effect); });
-    if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("a click takes the mouse to look round, Esc frees it");
+    if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("click to look around with the mouse, Esc frees it");
     return {};
 }
 

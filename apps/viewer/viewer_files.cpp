@@ -130,7 +130,7 @@ void Viewer::offer_unsaved() {
         settle("unsaved edits", document_->take_unsaved(text));
     };
     screen_.editor()->look().ask(
-        fmt::format("Edits of {} were not saved when its window ended. They are still there.", name),
+        fmt::format("The window closed before the edits of {} were saved. They are still there.", name),
         {{"Take them", take}, {"Throw them away", [this] { journal_->begin(*document_); }}});
     tell(fmt::format("unsaved edits of {} are there", name));
 }

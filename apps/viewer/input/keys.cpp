@@ -20,7 +20,7 @@ constexpr std::array table{
     Key{GLFW_KEY_F3, 0, KeyAction::NormalArrows, "F3", "an arrow for the normal of every vertex"},
     Key{GLFW_KEY_F4, 0, KeyAction::Shadows, "F4", "shadows"},
     Key{GLFW_KEY_F6, 0, KeyAction::All, "F6",
-        "all post-processing; a scene then shows its own curve at the look's exposure"},
+        "all post-processing, on and off; off, a scene shows its own curve at the look's exposure"},
     Key{GLFW_KEY_F11, 0, KeyAction::Fullscreen, "F11", "the whole screen, and back"},
     Key{GLFW_KEY_F12, 0, KeyAction::Screenshot, "F12", "stores the picture as a PNG"},
     Key{GLFW_KEY_F12, GLFW_MOD_SHIFT, KeyAction::WindowScreenshot, "Shift+F12", "stores the window as a PNG"},
@@ -32,16 +32,17 @@ constexpr std::array table{
     Key{GLFW_KEY_Z, GLFW_MOD_CONTROL, KeyAction::Undo, "Ctrl+Z", "takes the last edit back", false, true},
     Key{GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, KeyAction::Redo, "Ctrl+Shift+Z", "makes it again", false, true},
     Key{GLFW_KEY_Y, GLFW_MOD_CONTROL, KeyAction::Redo, "Ctrl+Y", "the same", false, true},
-    Key{GLFW_KEY_P, 0, KeyAction::Pause, "P", "stops the time, and lets it go on"},
-    Key{GLFW_KEY_COMMA, 0, KeyAction::StepBack, ",", "of a sequence: one frame back"},
-    Key{GLFW_KEY_PERIOD, 0, KeyAction::StepForth, ".", "of a sequence: one frame on"},
+    Key{GLFW_KEY_P, 0, KeyAction::Pause, "P", "stops the time, and continues it"},
+    Key{GLFW_KEY_COMMA, 0, KeyAction::StepBack, ",", "one frame back in a sequence"},
+    Key{GLFW_KEY_PERIOD, 0, KeyAction::StepForth, ".", "one frame on in a sequence"},
     Key{GLFW_KEY_SPACE, 0, KeyAction::ResetCamera, "Space", "the scene's own camera", false, true},
     Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "frames all", false, true},
     Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},
     Key{GLFW_KEY_B, 0, KeyAction::Compare, "B", "compares two looks at a divider", false, true},
     // A character, wherever a keyboard has it: the interface reports it.
     Key{GLFW_KEY_UNKNOWN, relevant, KeyAction::KeySheet, "?", "this list of keys"},
-    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then quits; twice where changes would be lost"},
+    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc",
+        "frees the mouse, then quits; press it twice if changes would be lost"},
 };
 
 }  // namespace
@@ -66,8 +67,9 @@ std::vector<KeyLine> key_lines() {
         {"W A S D", "walks; with Shift it runs", true, false},
         {"W A S D Q E", "flies; with Shift faster", false, true},
         {"Space", "jumps", true, false},
-        {"mouse", "looks round; a click takes it, Esc frees it", true, false},
-        {"mouse", "left orbits, middle pans, right looks, wheel nears; of a stored frame the wheel zooms", false, true},
+        {"mouse", "looks around; a click captures the mouse, Esc frees it", true, false},
+        {"mouse", "left orbits, middle pans, right looks around, the wheel goes nearer; on a stored frame it zooms",
+         false, true},
     };
     // Those of effects stand among the others by their number.
     for (std::uint32_t number = 1; number <= 12; ++number) {

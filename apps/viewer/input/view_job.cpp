@@ -59,7 +59,7 @@ Result<Named> named_by(const ViewFlags& flags) {
             continue;
         }
         if (!out.look.empty())
-            return user_error(fmt::format("{}: one look at a time, and {} is one, too", printable(input),
+            return user_error(fmt::format("{}: is a second look beside {}: one is allowed", printable(input),
                                           printable(out.look.string())));
         out.look = input;
     }

@@ -198,7 +198,7 @@ void Viewer::open_place(const darkroom::panels::TextPlace& place) {
     if (*is_open) return tell(fmt::format("opened {}", editor_command("$VISUAL", place)));
     const std::string command = editor_command({}, place);
     ImGui::SetClipboardText(command.c_str());
-    tell(fmt::format("copied, as $VISUAL names no editor: {}", command));
+    tell(fmt::format("$VISUAL names no editor; copied: {}", command));
 }
 
 void Viewer::tell(std::string line) {

@@ -123,7 +123,7 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     flow.next(checkbox_width("A/B"));
     ImGui::Checkbox("A/B", &is_comparing_);
     look_.note_place("view/compare");
-    tip("Compares two of the look, the look as it was saved, none, and another file. The divider can be dragged.");
+    tip("Compares two of these: this look, the saved look, no effects, another file. Drag the divider.");
     flow.next(9.6F * em + gap);
     ImGui::BeginDisabled(!is_comparing_);
     const bool had_other = left_ == Side::Other || right_ == Side::Other;
@@ -162,7 +162,7 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     bool is_fitted = picture.zoom() == 0;
     if (ImGui::Checkbox("Fit", &is_fitted)) is_fitted ? picture.fit() : picture.set_zoom(1);
     look_.note_place("view/fit");
-    tip("Shows all of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
+    tip("Fits the picture into the window, or shows it pixel by pixel. The wheel zooms if no camera uses it.");
     view_rows_ = flow.rows();
 }
 

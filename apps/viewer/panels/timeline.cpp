@@ -38,7 +38,7 @@ void EditPanels::draw_timeline(const Input& input) {
         ImGui::SameLine(0, gap);
         return is_pressed;
     };
-    if (button(input.is_paused ? "Play" : "Pause", "Stops the time, and lets it go on (P).", "time/play", 4 * em))
+    if (button(input.is_paused ? "Play" : "Pause", "Stops the time, and continues it (P).", "time/play", 4 * em))
         is_pause_wanted_ = true;
     if (button("<", "One frame back (comma).", "time/back")) playback.step(-1);
     if (button(">", "One frame on (full stop).", "time/forth")) playback.step(1);
@@ -48,7 +48,7 @@ void EditPanels::draw_timeline(const Input& input) {
     bool is_looping = playback.is_looping();
     if (ImGui::Checkbox("Loop", &is_looping)) playback.set_looping(is_looping);
     look_.note_place("time/loop");
-    tip("Begins anew behind the last frame.");
+    tip("Starts again after the last frame.");
     ImGui::SameLine(0, gap);
     auto rate = static_cast<float>(playback.rate());
     ImGui::SetNextItemWidth(4.5F * em);

@@ -63,7 +63,8 @@ void add_now(PanelState& state, const EffectInfo& effect) {
 }
 
 constexpr const char* becomes_stack =
-    "The table becomes a list of entries, [[stack]], in the same order. What is off and was never set leaves the list.";
+    "The table becomes a list of entries, [[stack]], in the same order. Effects that are off and were never set leave "
+    "the list.";
 
 void add(PanelState& state, const EffectInfo& effect) {
     ImGui::CloseCurrentPopup();

@@ -134,7 +134,7 @@ void draw_popup(PanelState& state) {
         if (ImGui::Button("Add the look of a file...", {-FLT_MIN, 0})) add_of_file(state, wanted.name);
         ImGui::EndDisabled();
         state.note("mover/file");
-        tooltip("At a weight of 1 the picture is that look's, as far as its entries are in this one.");
+        tooltip("At a weight of 1 the entries that both looks have take the values of that look.");
     }
     if (is_pressed(ImGuiKey_Escape, false)) ImGui::CloseCurrentPopup();
     if (is_taken && can_add) {

@@ -72,10 +72,10 @@ void draw_mover(PanelState& state, edit::Mover mover) {
     const std::string name = edit::name_of(state.look(), mover);
     const bool has_own_values = mover.is_layer && state.look().layers[mover.number].file.empty();
     const char* sentence = "Adds to a value when its event fires, and dies down.";
-    if (mover.is_layer) sentence = "Goes over the values of the stack, by its weight.";
+    if (mover.is_layer) sentence = "Replaces values of the stack, by its weight.";
     if (has_own_values)
         sentence =
-            "Goes over the values of the stack, by its weight. The menu of a value, on the right button, takes it "
+            "Replaces values of the stack, by its weight. The menu of a value, on the right button, takes it "
             "out.";
     draw_head(name, sentence);
     if (!mover.is_layer) {
@@ -86,8 +86,8 @@ void draw_mover(PanelState& state, edit::Mover mover) {
         ImGui::SameLine();
     }
     if (has_own_values) {
-        draw_add_mover(state, {.is_layer = true, .layer = mover.number}, "Add a value",
-                       "Adds a value that the layer has of its own.", "layer/add_value");
+        draw_add_mover(state, {.is_layer = true, .layer = mover.number}, "Add a value", "Adds a value to the layer.",
+                       "layer/add_value");
         ImGui::SameLine();
     }
     if (mover.is_layer) draw_distance_button(state, mover.number, name);

@@ -71,7 +71,7 @@ class StackList {
         const float width = ImGui::CalcTextSize("+").x + 2 * ImGui::GetStyle().FramePadding.x;
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         draw_add_mover(state_, {.is_layer = is_layer}, "+",
-                       is_layer ? "Adds a layer: values that go over those of the stack, by its weight."
+                       is_layer ? "Adds a layer: values that replace those of the stack, by its weight."
                                 : "Adds a pulse, which adds to a value when its event fires.",
                        is_layer ? "stack/add_layer" : "stack/add_pulse");
     }
@@ -123,8 +123,8 @@ class StackList {
     void draw_table() {
         const bool is_on = look_.is_enabled;
         if (icon_button("##table", is_on ? Icon::Shown : Icon::Hidden,
-                        is_on ? "Switches all off but tone mapping and encoding."
-                              : "Switches all on that are on by themselves.",
+                        is_on ? "Switches off all effects but tone mapping and encoding."
+                              : "Switches on all effects that start switched on.",
                         !is_on))
             state_.edit(is_on ? "all off" : "all on", [is_on](Look& look) {
                 look.is_enabled = !is_on;
@@ -135,8 +135,8 @@ class StackList {
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("Flat table");
         tooltip(
-            "Every effect of the flat table, in its fixed order. Moving or copying one makes it a stack, with what is "
-            "off where it was set.");
+            "Every effect of the flat table, in its fixed order. Moving or copying one makes it a stack; of those that "
+            "are off, it keeps those that were set.");
         ImGui::SameLine();
         const float room = ImGui::GetContentRegionAvail().x - add_width() - ImGui::GetStyle().ItemSpacing.x;
         ImGui::SetNextItemWidth(std::min(9 * ImGui::GetFontSize(), room));
@@ -320,7 +320,7 @@ class StackList {
         state_.note(fmt::format("stack/{}.opacity", name));
         tooltip("Share of its result that goes over its input: drag, or double-click and type.");
         ImGui::SameLine(0, 0);
-        if (icon_button("##duplicate", Icon::Duplicate, "Puts a copy behind it.", true))
+        if (icon_button("##duplicate", Icon::Duplicate, "Puts a copy after it.", true))
             state_.edit(fmt::format("duplicate {}", name), [&state = state_, name](Look& look) -> Result<> {
                 const Result<std::string> made = edit::duplicate_entry(look, name);
                 if (!made) return failure(made.error());

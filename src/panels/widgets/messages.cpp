@@ -175,7 +175,7 @@ void Messages::draw(const Note& note) {
         if (note) note(fmt::format("message/{}", number));
         offer_place(entry);
         ImGui::SetCursorScreenPos({end.x - ImGui::GetFrameHeight(), corner.y});
-        if (icon_button("##close", Icon::Remove, "Puts this message away.")) entry.is_put_away = true;
+        if (icon_button("##close", Icon::Remove, "Removes this message.")) entry.is_put_away = true;
         ImGui::SetCursorScreenPos(corner);
         ImGui::Dummy({width, height});
         ImGui::PopID();
