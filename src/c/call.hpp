@@ -72,7 +72,7 @@ template <class T>
             fmt::format("{}.struct_size = {}: allowed is sizeof({}), {} in this version", name, size, name, sizeof(T)));
     const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
     if (std::any_of(bytes + sizeof(T), bytes + size, [](unsigned char byte) { return byte != 0; }))
-        return user_error(fmt::format("{}: a member behind its first {} bytes is set, which this version does not know",
+        return user_error(fmt::format("{}: a member after its first {} bytes is set, which this version does not know",
                                       name, sizeof(T)));
     std::memcpy(&out, bytes, sizeof(T));
     return out;

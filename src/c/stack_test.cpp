@@ -334,7 +334,7 @@ TEST(CInterface, StructsOfOtherVersions) {
     desc.newer = 1;
     expect_error(
         darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr),
-        fmt::format("darkroom_composer_add: DarkroomEntryDesc: a member behind its first {} bytes is set, which "
+        fmt::format("darkroom_composer_add: DarkroomEntryDesc: a member after its first {} bytes is set, which "
                     "this version does not know",
                     sizeof(DarkroomEntryDesc))
             .c_str());

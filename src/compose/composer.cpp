@@ -376,9 +376,10 @@ Result<> Composer::set(ParameterId parameter, std::span<const std::uint32_t> wor
     auto found = stack.begin() + std::min<std::ptrdiff_t>(parameter.place, std::ssize(stack));
     if (found == stack.end() || !is_it(*found)) found = std::ranges::find_if(stack, is_it);
     if (found == stack.end() || parameter.row >= (*found)->info->parameters.rows.size())
-        return user_error(fmt::format(
-            "parameter {}: it is none of this composer; its entry may have been removed, or have another effect",
-            parameter.owner));
+        return user_error(
+            fmt::format("parameter {}: it does not belong to this composer; its entry may have been removed, or have "
+                        "another effect",
+                        parameter.owner));
     plan::Entry& entry = **found;
     const ParamInfo& row = entry.info->parameters.rows[parameter.row];
     if (auto ok = check_value(entry, row, words); !ok) return ok;

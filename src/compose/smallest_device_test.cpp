@@ -77,7 +77,7 @@ TEST_F(ComposeSmallestDevice, SaysInOneLineWhatIsMissing) {
         "compile: target.format = B10G11R11_UFLOAT_PACK32: allowed are colour formats that this device can render "
         "to or store; depth and block-compressed ones are none");
     EXPECT_EQ(error({.max_extent = {16, 16}, .color = {VK_FORMAT_R16G16B16A16_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT}}),
-              "compile: color.format = R16G16B16A16_UNORM: allowed is what this device can sample");
+              "compile: color.format = R16G16B16A16_UNORM: allowed are formats that this device can sample");
 }
 
 }  // namespace

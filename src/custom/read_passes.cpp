@@ -281,7 +281,7 @@ Result<FileFunction> read_end(Description& out, std::string_view text) {
     FileFunction end;
     if (auto ok = read_inputs(out, end, "@end", text); !ok) return failure(std::move(ok));
     if (std::ranges::find(end.inputs, "picture", &FileInput::name) != end.inputs.end())
-        return user_error("@end reads 'picture': it is at hand already");
+        return user_error("@end reads 'picture': the end has it as `color` already");
     return end;
 }
 
@@ -305,8 +305,7 @@ Result<> check_passes(Description& out) {
     }
     if (has_history && !out.pre_roll)
         return user_error(
-            "a history without `@pre_roll FRAMES`: how many frames before must have been developed for a right "
-            "picture");
+            "a history without `@pre_roll FRAMES`, the number of earlier frames that a right picture needs");
     if (!has_history && out.pre_roll) return user_error("@pre_roll: the file has no history");
     if (out.result.empty()) return {};
     if (out.info.touch == Touch::Warp) return user_error("@touch warp: with @result the passes make the picture");

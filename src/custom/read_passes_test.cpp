@@ -90,9 +90,9 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_lines("// @image half: 1 r8"), "my.glsl:2: half: a keyword of GLSL");
     EXPECT_EQ(error_of_lines("// @image mine_one: 1 r8\n// @pass one: -> mine_one\n// @end mine_one"),
               "my.glsl:1: image mine_one: names that begin with the effect's name are for functions");
-    EXPECT_EQ(error_of_lines("// @history one: 1 r8\n" + pass + "// @end one"),
-              "my.glsl:1: a history without `@pre_roll FRAMES`: how many frames before must have been developed for a "
-              "right picture");
+    EXPECT_EQ(
+        error_of_lines("// @history one: 1 r8\n" + pass + "// @end one"),
+        "my.glsl:1: a history without `@pre_roll FRAMES`, the number of earlier frames that a right picture needs");
     EXPECT_EQ(error_of_lines("// @pre_roll 3"), "my.glsl:1: @pre_roll: the file has no history");
     EXPECT_EQ(error_of_lines("// @pre_roll 9999"),
               "my.glsl:2: @pre_roll 9999: expected a number of frames in [0, 1000]");

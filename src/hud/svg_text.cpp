@@ -385,9 +385,8 @@ Result<SvgTemplate> SvgTemplate::parse(std::string document) {
             return error(at, fmt::format("{{{{{}}}}}: allowed is a name of letters, digits, '_', '-' and '.'",
                                          printable(inside)));
         if (colon < word.size() && !read_form(word.substr(colon + 1), binding.digits, binding.decimals))
-            return error(at,
-                         fmt::format("{{{{{}}}}}: allowed behind ':' is a number's form of zeros, as 0, 000 or 0.00",
-                                     printable(inside)));
+            return error(at, fmt::format("{{{{{}}}}}: allowed after ':' is a number's form of zeros, as 0, 000 or 0.00",
+                                         printable(inside)));
         out.bindings_.push_back(std::move(binding));
         at = close + 2;
     }

@@ -93,7 +93,7 @@ class CubeParser {
         if (found == keywords_.end()) return refuse_unknown(words[0]);
         if (found->line != 0)
             return refuse(fmt::format("{}: is in line {} already, once is allowed", words[0], found->line));
-        if (rows_ > 0) return refuse(fmt::format("{}: stands behind entries, allowed is before the first", words[0]));
+        if (rows_ > 0) return refuse(fmt::format("{}: stands after entries, allowed is before the first", words[0]));
         found->line = line_;
         return (this->*found->read)(Words(words).subspan(1));
     }

@@ -71,7 +71,7 @@ TEST(TablesCube, ErrorsNameLineThingValueAndWhatIsAllowed) {
              std::pair(std::string("LUT_3D_SIZE 2 2\n"), "a.cube:1: size 2 2: "),
              std::pair(std::string("LUT_3D_SIZE -2\n"), "a.cube:1: size -2: "),
              std::pair(head + head, "a.cube:2: LUT_3D_SIZE: is in line 1 already"),
-             std::pair(head + "0 0 0\nDOMAIN_MIN 0 0 0\n", "a.cube:3: DOMAIN_MIN: stands behind entries"),
+             std::pair(head + "0 0 0\nDOMAIN_MIN 0 0 0\n", "a.cube:3: DOMAIN_MIN: stands after entries"),
              std::pair(head + "DOMAIN_MIM 0 0 0\n",
                        "a.cube:2: unknown keyword 'DOMAIN_MIM', did you mean 'DOMAIN_MIN'? allowed is TITLE, "),
              std::pair(head + "\n# c\n0 0\n", "a.cube:4: 2 values: expected 3 numbers"),

@@ -123,7 +123,7 @@ TEST_F(FarmFiles, AScenesFramesAreThoseThatAreAskedFor) {
 TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
     const std::string shot = "slurm 'shot.####.exr' -o out/ ";
     expect_farm_refuses(shot + "shot.0001.exr", 1,
-                        "unexpected 'shot.0001.exr': allowed is one INPUT, and flags of develop behind --");
+                        "unexpected 'shot.0001.exr': allowed is one INPUT, and flags of develop after --");
     expect_farm_refuses(shot + "-- --exposur 2", 1,
                         "develop: unknown argument '--exposur', did you mean '--exposure'?");
     expect_farm_refuses(shot + "-- --exposure 2000", 1, "--exposure = 2000: allowed is [0, 1024] x");

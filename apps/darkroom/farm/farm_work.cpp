@@ -77,7 +77,7 @@ std::vector<std::string> FarmFlags::task() const {
 
 Result<> FarmFlags::check_arguments() const {
     if (!more_.empty() && !more_.front().starts_with('-'))
-        return user_error(fmt::format("unexpected '{}': allowed is one INPUT, and flags of {} behind --",
+        return user_error(fmt::format("unexpected '{}': allowed is one INPUT, and flags of {} after --",
                                       printable(more_.front()), is_scene() ? "render" : "develop"));
     if (out_ == stream_name) return user_error("-o -: a farm writes files");
     // Its end is where `develop` reads which frames are meant.
@@ -151,7 +151,7 @@ Result<FarmInputs> FarmFlags::check(const FarmWork& work, std::span<const darkro
     if (Result<> parsed = trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags); !parsed)
         return failure(std::move(parsed));
     if (const std::vector<std::string> inputs = command.flags.typed("INPUT"); inputs.size() > 1)
-        return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}", printable(inputs.back()),
+        return user_error(fmt::format("unexpected '{}': allowed after -- are flags of {}", printable(inputs.back()),
                                       command.flags.name()));
     if (!allows_custom_effects_)
         for (const std::string& argument : more_)

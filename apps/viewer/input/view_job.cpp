@@ -68,7 +68,7 @@ Result<Named> named_by(const ViewFlags& flags) {
     const std::filesystem::path sample = shipped_sample();
     if (sample.empty())
         return user_error(
-            fmt::format("{}: it is a look, and the frame that ships to try one on is not there: a scene, a "
+            fmt::format("{}: is a look, and the sample frame is not there: a scene, a "
                         "model or a frame is needed beside it",
                         printable(out.look.string())));
     out.inputs.push_back(sample.string());

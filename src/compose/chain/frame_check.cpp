@@ -206,7 +206,9 @@ Result<> check_watched(const AllGiven& all, const CompileDesc& desc, const Frame
             const Watched& other = frame.watched[j];
             const bool is_alike = other.id == watched.id || overlap(other.target, watched.target);
             if (is_alike && other.target.is_given() && watch_with(desc, other.id))
-                return refused(given, " has the id or the image of frame.watched[{}]: allowed are some of its own", j);
+                return refused(
+                    given, " has the id or the image of frame.watched[{}]: allowed are an id and an image of its own",
+                    j);
         }
     }
     return {};
@@ -232,9 +234,9 @@ Result<> check_overlaps(const AllGiven& all, const CompileDesc& desc) {
 
 Result<> check_input(const gpu::Context& context, std::string_view name, const ImageUse& use) {
     if ((use.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0)
-        return user_error(fmt::format("compile: {}.usage = {:#x}: allowed is what contains SAMPLED", name, use.usage));
+        return user_error(fmt::format("compile: {}.usage = {:#x}: allowed are usages with SAMPLED", name, use.usage));
     if (!context.supports(use.format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
-        return user_error(fmt::format("compile: {}.format = {}: allowed is what this device can sample", name,
+        return user_error(fmt::format("compile: {}.format = {}: allowed are formats that this device can sample", name,
                                       gpu::format_name(use.format)));
     return {};
 }
@@ -255,7 +257,7 @@ Result<> check_target(const gpu::Context& context, const std::string& name, cons
     const bool is_attached = (use.usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0;
     const bool is_stored = (use.usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
     if (!is_attached && !is_stored)
-        return user_error(fmt::format("compile: {}.usage = {:#x}: allowed is what contains COLOR_ATTACHMENT or STORAGE",
+        return user_error(fmt::format("compile: {}.usage = {:#x}: allowed are usages with COLOR_ATTACHMENT or STORAGE",
                                       name, use.usage));
     if (!(is_attached && can_attach) && !(is_stored && can_store))
         return user_error(fmt::format("compile: {}.usage = {:#x}: {} needs {} on this device", name, use.usage,
@@ -271,7 +273,7 @@ Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
         const Watch& watch = desc.watches[i];
         if (*watch_with(desc, watch.id) != i)
             return user_error(
-                fmt::format("compile: watches[{}].id = {}: watches[{}] has it, too; allowed is one of its own", i,
+                fmt::format("compile: watches[{}].id = {}: watches[{}] has it, too; allowed is an id of its own", i,
                             watch.id, *watch_with(desc, watch.id)));
         if (auto ok = check_target(context, fmt::format("watches[{}].target", i), watch.target); !ok) return ok;
     }

@@ -268,7 +268,7 @@ TEST_F(ComposeFrameCheck, CompileRefusesImagesThatNoFrameCanBring) {
     constexpr VkImageUsageFlags transfer = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     const CompileFault faults[] = {
         {[](CompileDesc& d) { d.color.format = VK_FORMAT_UNDEFINED; }, "color.format = UNDEFINED"},
-        {[](CompileDesc& d) { d.color.usage = transfer; }, "color.usage = 0x1: allowed is what contains SAMPLED"},
+        {[](CompileDesc& d) { d.color.usage = transfer; }, "color.usage = 0x1: allowed are usages with SAMPLED"},
         {[](CompileDesc& d) { d.depth.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT; }, "depth.usage = 0x20"},
         {[](CompileDesc& d) { d.normals.usage = VK_IMAGE_USAGE_STORAGE_BIT; }, "normals.usage = 0x8"},
         {[](CompileDesc& d) { d.velocity.usage = 0; }, "velocity.usage = 0x0"},
@@ -277,7 +277,7 @@ TEST_F(ComposeFrameCheck, CompileRefusesImagesThatNoFrameCanBring) {
          "depth.format = R8G8B8A8_UNORM: allowed are depth formats, R32_SFLOAT, R16_SFLOAT and R16_UNORM"},
         {[](CompileDesc& d) { d.depth.format = VK_FORMAT_S8_UINT; }, "depth.format = "},
         {[](CompileDesc& d) { d.target.usage = VK_IMAGE_USAGE_SAMPLED_BIT; },
-         "target.usage = 0x4: allowed is what contains COLOR_ATTACHMENT or STORAGE"},
+         "target.usage = 0x4: allowed are usages with COLOR_ATTACHMENT or STORAGE"},
         {[](CompileDesc& d) { d.target.format = VK_FORMAT_D32_SFLOAT; }, "target.format = D32_SFLOAT"},
         {[](CompileDesc& d) { d.target.format = VK_FORMAT_BC7_UNORM_BLOCK; }, "target.format = "},
         {[](CompileDesc& d) { d.target.format = VK_FORMAT_UNDEFINED; }, "target.format = "},

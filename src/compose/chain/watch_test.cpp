@@ -260,7 +260,7 @@ TEST_F(ComposeWatch, WrongOnesAreRefusedByName) {
         const auto made = composer.compile(desc());
         return made ? "compiled" : made.error().text;
     };
-    EXPECT_EQ(compile_error(), "compile: watches[1].id = 7: watches[0] has it, too; allowed is one of its own");
+    EXPECT_EQ(compile_error(), "compile: watches[1].id = 7: watches[0] has it, too; allowed is an id of its own");
     watches[1].id = 8;
     watches[1].target.format = VK_FORMAT_D32_SFLOAT;
     EXPECT_TRUE(compile_error().starts_with("compile: watches[1].target.format = D32_SFLOAT")) << compile_error();

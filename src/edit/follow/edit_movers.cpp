@@ -112,7 +112,7 @@ Result<std::size_t> add_layer_of(Look& look, std::string_view name, const std::s
     if (Result<> done = check_new_layer(look, name); !done) return failure(std::move(done));
     Result<std::vector<LookLayer::Value>> values = layer_values(look, file, options);
     if (!values) return failure(std::move(values));
-    if (values->empty()) return user_error(fmt::format("{}: it is no other look", printable(file)));
+    if (values->empty()) return user_error(fmt::format("{}: it is this look; allowed is another one", printable(file)));
     look.layers.push_back({.name = std::string(name),
                            .file = file,
                            .state = {.weight = 1},

@@ -87,7 +87,7 @@ Result<KernelStatistics> pipeline_statistics(const Context& context, VkPipeline 
         out.machine_code = std::move(*code);
         return out;
     }
-    return machine_error("the driver says nothing of a pipeline's program");
+    return machine_error("the driver tells nothing about a pipeline's program");
 }
 
 }  // namespace darkroom::gpu

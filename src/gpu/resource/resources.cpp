@@ -151,7 +151,7 @@ Result<Memory> Memory::create(Context& context, DeviceMemoryRequest wanted, std:
                               std::string_view what) {
     Memory memory;
     memory.context = &context;
-    Result<> allocated = machine_error(fmt::format("no type of the device's memory will do for {}", what));
+    Result<> allocated = machine_error(fmt::format("no memory type of the device suits {}", what));
     wanted.is_mapped = kind != Kind::Device;
     // A full heap is no reason to fail while another type would do.
     for (const std::uint32_t type : memory_types_for(context.memory, type_bits, kind)) {

@@ -96,7 +96,8 @@ Submission::~Submission() = default;
 Result<Submission> Submission::begin(Context& context, std::string_view what,
                                      const std::function<void(VkCommandBuffer)>& body) {
     if (context.queue == VK_NULL_HANDLE) {
-        return machine_error(fmt::format("{}: an adopted device has no queue of ours to submit to", what));
+        return machine_error(
+            fmt::format("{}: an adopted device is the host's, and the library does not submit to its queue", what));
     }
     auto state = std::make_unique<State>(context, what);
     if (Result<> done = context.check(state->run(body), what); !done) return failure(std::move(done));

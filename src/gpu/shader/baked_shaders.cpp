@@ -123,7 +123,7 @@ Result<BakedShaders> BakedShaders::read(std::span<const std::byte> file) {
             return user_error(
                 fmt::format("baked kernels: kernel {} of {}: {}", i + 1, head.count, checked.error().text));
     if (place != file.size())
-        return user_error(fmt::format("baked kernels: {} bytes behind the last kernel", file.size() - place));
+        return user_error(fmt::format("baked kernels: {} bytes after the last kernel", file.size() - place));
     BakedShaders out;
     out.file_.assign(file.begin(), file.end());
     out.count_ = head.count;

@@ -185,7 +185,7 @@ Result<ChannelSet> Finder::mapped_set(std::string_view what, const std::string& 
             if (layer.has(letters)) return layer.set(letters);
     }
     if (!is_known) return unknown(what, name);
-    return user_error(fmt::format("the layer \"{}\" has not the components {} that {} needs", one_printable_line(name),
+    return user_error(fmt::format("the layer \"{}\" lacks the components {} that {} needs", one_printable_line(name),
                                   components.front(), what));
 }
 
