@@ -22,7 +22,7 @@ std::string without_controls(std::string_view text) {
     return out;
 }
 
-/// Where there is no memory for a text, the one that needs none.
+/// Without memory for a text, one that needs none.
 thread_local std::string last_text;
 thread_local const char* last = "";
 

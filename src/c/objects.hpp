@@ -64,7 +64,7 @@ struct DarkroomHudInertiaObject {
 
 namespace darkroom::c {
 
-/// The object of an effect of the library; null: it is none of those.
+/// The object of an effect of the library; null for other effects.
 [[nodiscard]] DarkroomEffect effect_of(const EffectInfo& info);
 
 [[nodiscard]] inline Handle handle_of(DarkroomHandle handle) {

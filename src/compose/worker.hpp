@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The one thread of a composer: it builds kernels that recordings missed, compiles what compile_later() asked for, and
-// frees what recordings put away. Where no thread may or can be started, there is none: kernels stay the complete ones.
+// frees what recordings put away. If no thread may or can start, kernels stay complete.
 
 #include <atomic>
 #include <functional>

@@ -18,7 +18,7 @@ using gpu::Token;
 
 constexpr Names<std::uint32_t, 8> types{
     {{"uint", 4}, {"int", 4}, {"float", 4}, {"vec2", 8}, {"vec4", 16}, {"ivec2", 8}, {"ivec4", 16}, {"uvec4", 16}}};
-/// Of images that compute passes write: every device does.
+/// Formats of images that compute passes write: every device stores these.
 constexpr std::array stored_formats{VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
                                     VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32_SFLOAT};
 

@@ -20,7 +20,7 @@ VkBufferImageCopy whole(VkExtent2D extent) {
     return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {extent.width, extent.height, 1}};
 }
 
-/// Of codes the light that they stand for; alpha is none.
+/// The light that codes stand for; alpha stays.
 void fill_with_codes(const UploadLayer& layer, std::byte* out) {
     static const std::array<float, 256> light = [] {
         std::array<float, 256> all{};

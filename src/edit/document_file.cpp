@@ -147,7 +147,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
     const auto checked = [&](Result<std::string> text) -> Result<std::string> {
         if (!text) return text;
         const Result<Look> read = parse_look(*text, shown, checking);
-        // A custom effect that is wrong just now is no reason to keep the look from its file.
+        // A look is saved even if its custom effect has an error at the moment.
         const bool is_readable = read || (is_spliced && parse_look(text_, shown, checking));
         if (is_readable && !read) return failure(read.error());
         if (is_readable && !reads_as(*read, look_))

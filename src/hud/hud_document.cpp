@@ -199,7 +199,7 @@ struct HudDocument::State {
     std::string file_error, draw_error;
     FileStamp stamp;
     Clock::time_point looked{};
-    // Of whoever draws: the worker, or the caller where there is none.
+    // Used by the thread that draws: the worker, or the caller if there is no worker.
     SvgProcess process;
     // Between both, under the mutex. Busy from a job to the taking of its outcome.
     std::mutex mutex;

@@ -131,7 +131,7 @@ void draw_question(PanelState& state) {
         state.note(fmt::format("question/{}", i));
         ImGui::SameLine();
     }
-    // The key that led here is no answer yet.
+    // The key that opened the question does not answer it.
     if (!is_new && is_pressed(ImGuiKey_Enter, false)) chosen = state.question->answers.front().second;
     is_done |= ImGui::Button("Cancel") || chosen != nullptr;
     state.note("question/cancel");

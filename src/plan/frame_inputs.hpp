@@ -29,7 +29,7 @@ struct FrameInput {
     PassVector neutral{};
     bool is_optional = false;  ///< `neutral` stands in; else effects that need it are left out
     InputExtent extent = InputExtent::Scene;
-    /// At another extent. Between two distances, directions or motions there is none that is true of either.
+    /// At another extent. These are not interpolated: no value between two distances, directions or motions is true.
     Resampling resampling = Resampling::Nearest;
     VkFormat resampled = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< UNDEFINED: CompileDesc::intermediate
     bool (*can_hold)(VkFormat) = nullptr;                ///< null: any that can be sampled

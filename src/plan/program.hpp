@@ -175,7 +175,7 @@ struct ProgramPass {
         visit(output, output_mip_level);
         for (const graph::Version more : more_outputs) visit(more, output_mip_level);
     }
-    /// What of the entries is in it: of an effect's pass one step, of a copy none.
+    /// The steps of entries that it holds: one for an effect's pass, none for a copy.
     [[nodiscard]] std::span<const FusedStep> steps() const;
     [[nodiscard]] std::optional<std::uint32_t> watch() const {
         const CopyPass* const copy = as<CopyPass>();

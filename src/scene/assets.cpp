@@ -29,7 +29,7 @@ struct FilePlace {
     [[nodiscard]] fs::path path() const { return folder / name; }
 };
 
-/// What is there and is no file either is what the scene means where there is nothing better: opening it tells why not.
+/// If nothing better is found, a name that exists but is not a file stands for the scene's: opening it gives the error.
 fs::path first_file(std::span<const FilePlace> places, NamedFiles named_files) {
     const auto may_be = [&](const FilePlace& place) {
         return named_files == NamedFiles::Any || lies_in(place.folder, place.path());

@@ -42,7 +42,7 @@ enum Flags : std::uint32_t { HasSecond = 1, IsFalseColor = 2, IsClippingMarked =
 
 constexpr VkShaderStageFlags both_stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-/// Where there is no second view, the first: descriptors are never empty.
+/// Without a second view the first one again: descriptors are never empty.
 const PaneView& second_view(const Pane& pane) {
     return pane.second && pane.second->image.is_given() ? *pane.second : pane.view;
 }

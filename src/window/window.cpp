@@ -174,7 +174,7 @@ void Window::capture_cursor(bool is_captured) {
     if (is_captured == state_->is_captured) return;
     state_->is_captured = is_captured;
     glfwSetInputMode(handle(), GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-    // Where it is from now on is no movement.
+    // Its next place does not count as a movement.
     glfwGetCursorPos(handle(), &state_->cursor[0], &state_->cursor[1]);
 }
 

@@ -28,7 +28,7 @@ struct KeyPress {
 
 class Window {
   public:
-    /// An error of the machine where there is no display, or where it cannot show Vulkan.
+    /// A machine error if there is no display, or if it cannot show Vulkan.
     [[nodiscard]] static Result<Window> create(const WindowDesc& desc);
     Window(Window&&) noexcept;
     Window& operator=(Window&&) noexcept;

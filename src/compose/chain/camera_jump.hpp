@@ -12,7 +12,7 @@
 namespace darkroom::compose {
 
 /// Did the camera move or turn by more than Camera::jump_distance and jump_angle say, since its view was `before`?
-/// Views turn and move alone. What is no number is a jump.
+/// Views only turn and move. NaN is a jump.
 [[nodiscard]] inline bool is_camera_jump(const Matrix& before, const Camera& camera) {
     const Matrix& now = camera.view;
     double trace = 0, square = 0;
@@ -25,7 +25,7 @@ namespace darkroom::compose {
         }
         square += way * way;
     }
-    // The trace of a matrix that turns by an angle is 1 + 2 cos(angle); below -1 there is none.
+    // The trace of a matrix that turns by an angle is 1 + 2 cos(angle), so it is -1 at least.
     const double angle = camera.jump_angle;
     const double least_trace =
         angle >= std::numbers::pi ? -std::numeric_limits<double>::infinity() : 1 + 2 * std::cos(std::max(angle, 0.0));

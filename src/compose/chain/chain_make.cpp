@@ -127,7 +127,7 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     has_history_.resize(entries_.size());
     watched_.resize(desc_.compile.watches.size());
     watch_states_.resize(watched_.size());
-    // Depth is never filtered: what lies between two surfaces is no surface.
+    // Depth is never filtered: between two surfaces there is none.
     for (const graph::Slot& slot : compiled_->slots())
         is_nearest_.push_back(!gpu::can_filter(context_, slot.desc.format) || gpu::is_depth(slot.desc.format) ? 1 : 0);
 

@@ -18,7 +18,7 @@ namespace darkroom::compose {
 /// Can this device read the inputs and write the target as they are described?
 [[nodiscard]] Result<> check_images(const gpu::Context& context, const CompileDesc& desc);
 
-/// The image of a frame that is no cascades of a light.
+/// An image of a frame, other than the cascades of a light.
 [[nodiscard]] const ImageRef& host_image(const Frame& frame, plan::HostImage which);
 
 /// Which of CompileDesc::watches has this number; none.

@@ -69,7 +69,7 @@ bool confine_calls(bool opens_files) {
             is_made = seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) == 0 && is_made;
     for (const int call : allowed) is_made = seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) == 0 && is_made;
     // Threads, but no processes. What clone3 is asked lies in memory, which a filter cannot see: the C library takes
-    // clone where there is none.
+    // clone if there is none.
     const auto add = [&](std::uint32_t action, int call, const scmp_arg_cmp& argument) {
         is_made = seccomp_rule_add(filter.get(), action, call, 1, argument) == 0 && is_made;
     };

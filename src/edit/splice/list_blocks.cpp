@@ -43,7 +43,7 @@ class Blocks {
             const std::size_t end = is_end ? now.size() : std::min(now.size(), k + last + 1 - i);
             const std::size_t first = k;
             for (; k < end; ++k) out += now[k].text + (k + 1 < end ? now[k].gap : std::string());
-            // A row that is no more takes its gap along.
+            // A removed row takes its gap along.
             if (k > first) out += blocks_[last].gap;
             const std::size_t rest = is_end ? text_.size() : blocks_[last + 1].begin;
             out += text_.substr(blocks_[last].next, rest - blocks_[last].next);

@@ -10,7 +10,7 @@ namespace darkroom::edit {
 /// Makes a flat look the stack that it stands for. What is off keeps its place where a hand or a file has set it, and
 /// each entry is wired as its effect needs.
 void become_stack(Look& look);
-/// The entry of this name in a look that is no flat one any more; it has a place although it may be off.
+/// The entry of this name in a look that was flat and is a stack now; it has a place even if it is off.
 [[nodiscard]] Result<LookEntry*> restructured(Look& look, std::string_view name);
 
 }  // namespace darkroom::edit

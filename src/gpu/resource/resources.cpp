@@ -153,7 +153,7 @@ Result<Memory> Memory::create(Context& context, DeviceMemoryRequest wanted, std:
     memory.context = &context;
     Result<> allocated = machine_error(fmt::format("no memory type of the device suits {}", what));
     wanted.is_mapped = kind != Kind::Device;
-    // A full heap is no reason to fail while another type would do.
+    // If a heap is full, another memory type may still do.
     for (const std::uint32_t type : memory_types_for(context.memory, type_bits, kind)) {
         wanted.memory_type = type;
         allocated = context.allocate_memory(wanted, what, memory.piece);

@@ -8,7 +8,7 @@
 
 namespace darkroom {
 
-/// In ASCII, other characters as '?'. Empty: it has none, or is no profile.
+/// In ASCII, other characters as '?'. Empty: it has none, or is not a profile.
 [[nodiscard]] std::string profile_description(std::span<const std::byte> profile);
 
 }  // namespace darkroom

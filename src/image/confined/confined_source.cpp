@@ -15,7 +15,7 @@
 namespace darkroom {
 namespace {
 
-/// Of samples that are handed over at a time, unless rows that belong together are more.
+/// How many samples are handed over at a time, unless rows that belong together have more.
 constexpr std::size_t usual_memory = std::size_t{16} << 20;
 /// A picture is decoded in a second for each of so many bytes of samples, on a machine with much else to do.
 constexpr std::uint64_t bytes_of_a_second = std::uint64_t{4} << 20;

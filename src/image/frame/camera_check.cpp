@@ -61,7 +61,7 @@ Result<> check_camera(const FrameCamera& camera) {
           std::pair("darkroom:previousProjection", &camera.previous_projection)})
         if (*matrix)
             if (auto checked = check_camera_matrix(name, **matrix); !checked) return checked;
-    // Renderers stay within a pixel. What is far beyond is no place within the picture.
+    // Renderers stay within a pixel; a much larger number is an error.
     constexpr float most = 64;
     for (const auto& [name, jitter] :
          {std::pair("darkroom:jitter", &camera.jitter), std::pair("darkroom:previousJitter", &camera.previous_jitter)})

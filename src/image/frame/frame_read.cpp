@@ -352,7 +352,7 @@ Result<> FrameReader::make_masks() {
     };
     if (found_.reactive && options_.has_reactive)
         if (auto done = make(found_.reactive, 1, "the reactive mask", frame_.reactive); !done) return done;
-    // Of colours that are turned into ours there is no telling what it is.
+    // If colours are converted into ours, the space of this layer is not known.
     if (!found_.transparency || !options_.has_transparency || to_rec709_ || options_.input_chain) return {};
     return make(found_.transparency, 3, "the colour before transparency", frame_.transparency);
 }

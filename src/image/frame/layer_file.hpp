@@ -32,7 +32,7 @@ struct LayerSamples {
     std::vector<float> values;
 };
 
-/// What lies between the extremes of some samples, and what is no number.
+/// The range of some samples, and how many are not finite.
 struct SampleRange {
     /// Of the finite ones; without any, least is above most.
     float least = std::numeric_limits<float>::infinity(), most = -std::numeric_limits<float>::infinity();

@@ -31,7 +31,7 @@ struct NumberedFile {
 /// The path with its pattern replaced by a number; the path itself if it has none.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& pattern, long long number);
 
-/// The frame number in a file name: its last group of digits before the extension that is no version, as v2 is.
+/// The frame number in a file name: the last group of digits before the extension, without versions such as v2.
 [[nodiscard]] std::optional<long long> frame_number(const std::filesystem::path& path);
 
 }  // namespace darkroom

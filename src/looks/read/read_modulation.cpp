@@ -60,7 +60,7 @@ class ModulationReader {
 
     void wrong(const toml::node& node, std::string text) { reader_.report(node, Weight::Wrong, std::move(text)); }
 
-    /// The string of a key that must be there; empty, and reported, where it is none.
+    /// The string of a required key; empty, and reported, if the key is missing or not a string.
     std::string text_of(const toml::table& table, std::string_view of, std::string_view key, bool is_name) {
         const toml::node* const node = table.get(key);
         if (node == nullptr) {

@@ -17,7 +17,7 @@ namespace darkroom::panels {
 
 namespace {
 
-/// What of the plane is seen, and where.
+/// The visible part of the plane, and where it lies.
 struct View {
     ImVec2 corner, size;  ///< in pixels
     float least_x, most_x, least_y, most_y;
@@ -60,7 +60,7 @@ void move_point(Curve& curve, std::uint32_t point, float x, float y, const Range
     curve.y[point] = std::clamp(y, static_cast<float>(range.min), static_cast<float>(range.max));
 }
 
-/// Where x lies among the points; nothing: it is a point's, or there is no room.
+/// The index of x among the points; nothing: a point has this x, or there is no room.
 int add_point(Curve& curve, float x, float y, const Range& range) {
     if (curve.count == Curve::capacity) return -1;
     std::uint32_t at = 0;

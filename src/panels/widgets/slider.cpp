@@ -25,7 +25,7 @@ std::string text_of(const ParamInfo& row, double number) {
     return row.kind == Kind::Int ? fmt::format("{}", std::llround(number)) : fmt::format("{:.4g}", number);
 }
 
-/// The number at the right end of the slider, where few knobs are; without its unit where there is no room for both.
+/// The number at the right end of the slider, where the knob seldom is; without its unit if there is no room for both.
 struct Label {
     std::string text;
     float x = 0, width = 0;

@@ -84,7 +84,7 @@ double Layer::weight_at(const Moment& moment) const {
     const auto& [x, y, z] = distance->point;
     const double away = std::hypot(moment.eye[0] - double{x}, moment.eye[1] - double{y}, moment.eye[2] - double{z});
     const double near = distance->near, far = distance->far;
-    // What is no number is far away.
+    // NaN counts as far away.
     return away < far ? weight * std::min((far - away) / (far - near), 1.0) : 0;
 }
 

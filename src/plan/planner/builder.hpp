@@ -88,7 +88,7 @@ class Builder final : public PassBuilder {
     [[nodiscard]] bool check_outputs(const KernelPassDesc& desc);
     [[nodiscard]] bool check_compute(const ComputePassDesc& desc);
     void add_input(ProgramPass& pass, FusedStep& step, const KernelPassDesc::Input& input);
-    /// Says so in `error`, and returns false, if it is no value.
+    /// Sets `error` and returns false if it is not a value.
     [[nodiscard]] bool check_value(std::string_view reader, const std::string& name, PassBuffer value);
     [[nodiscard]] bool add_values(ProgramPass& pass, FusedStep& step, const KernelPassDesc& desc);
     /// Its text, its members and its gate.

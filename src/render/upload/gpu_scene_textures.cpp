@@ -28,7 +28,7 @@ std::set<TextureKey> used_textures(const scene::Assets& assets) {
     return keys;
 }
 
-/// Of textures that mask a surface: the least cutoff of the materials that have it.
+/// For textures that mask a surface: the smallest cutoff of the materials that use it.
 std::map<TextureKey, float> alpha_cutoffs(const scene::Assets& assets) {
     std::map<TextureKey, float> cutoffs;
     for (std::uint32_t model = 0; model < assets.models.size(); ++model)
