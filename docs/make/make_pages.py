@@ -183,7 +183,7 @@ def errors_page():
            "makes this page from the sources.\n",
            "For example:\n",
            "```text",
-           "darkroom: my.toml:4:1: bloom_intensity = -1: allowed is [0, 16]",
+           "darkroom: my.toml:4:19: bloom_intensity = -1: allowed is [0, 16]",
            "```\n"]
     files = [file for folder in ("apps", "effects", "src") for file in sorted((tree / folder).rglob("*.[ch]pp"))]
     names = [(file.relative_to(tree).as_posix(), file) for file in files]
