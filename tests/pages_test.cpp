@@ -219,8 +219,8 @@ TEST_F(CliPages, Effects) {
     EXPECT_TRUE(fs::exists(path("lens.png")));
 }
 TEST_F(CliPages, Verify) {
-    if (!fs::exists(fs::path(program).parent_path().parent_path() / "lib/darkroom/darkroom_verify"))
-        GTEST_SKIP() << "darkroom_verify is not built";
+    if (!fs::exists(fs::path(program).parent_path().parent_path() / "lib/darkroom/darkroom_verifier"))
+        GTEST_SKIP() << "darkroom_verifier is not built";
     // A folder as a finding would leave it: there is none on a driver that is right.
     const fs::path finding = path("verified/01_ssao_compute_lean");
     fs::create_directories(finding);
@@ -238,11 +238,11 @@ TEST_F(CliPages, WhatTheySayIsPrinted) {
         return std::string();
     };
     write("my.toml", "format = 1\n\n[post_process]\nbloom_intensity = -1\n");
-    const std::string refused = run_lines("darkroom develop a.exr --look my.toml --strict -o a.png").err;
+    const std::string refused = run_lines("darkroom plan my.toml --strict").err;
     EXPECT_EQ(shown("docs/errors.md", "my.toml"), refused);
     EXPECT_EQ(shown("docs/troubleshooting.md", "my.toml"), refused);
     write("my.toml", "[post_process]\nbloom_intensty = 0.1\nexposure = -2\n");
-    EXPECT_EQ(shown("docs/looks.md", "unknown key"), run_lines("darkroom develop a.exr --look my.toml -o a.png").err);
+    EXPECT_EQ(shown("docs/looks.md", "unknown key"), run_lines("darkroom plan my.toml").err);
 }
 // Lines that no test types, such as those for another machine, at least have no flag that their command does not know,
 // and name no file of the tree that is not there.

@@ -12,6 +12,7 @@ import unittest
 
 import numpy
 
+import darkroom
 from support import Case, light, source
 
 folder = source / "python" / "examples"
@@ -41,15 +42,18 @@ class Page(Case):
         blocks = re.findall(r"^```python\n(.*?)^```", (source / "docs/python.md").read_text(encoding="utf-8"), re.M | re.S)
         self.assertGreaterEqual(len(blocks), 1)
         was = os.getcwd()
-        try:
-            os.chdir(source)
-            for block in blocks:
-                names = {"frames": [light(), light()], "array": light()}
-                exec(compile(block, "docs/python.md", "exec"), names)
-                self.assertEqual(names["picture"].dtype, numpy.uint8)
-                self.assertEqual(names["glowing"].shape, light().shape)
-        finally:
-            os.chdir(was)
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                os.chdir(folder)
+                os.mkdir("samples")
+                darkroom.files.write_frame("samples/window.exr", darkroom.Frame(light()))
+                for block in blocks:
+                    names = {"frames": [light(), light()], "array": light()}
+                    exec(compile(block, "docs/python.md", "exec"), names)
+                    self.assertEqual(names["picture"].dtype, numpy.uint8)
+                    self.assertEqual(names["glowing"].shape, light().shape)
+            finally:
+                os.chdir(was)
 
 
 def _test(path):
