@@ -1,9 +1,9 @@
 # What an engine links. In C, and from every other language: libdarkroom.so, all of core, glsl, gpu, graph, plan,
 # compose, effects, custom and looks, which exports darkroom_* and nothing else. In C++: libdarkroom_cpp.so, the same
 # without looks, libdarkroom_looks.so, which reads looks (TOML) and table files, libdarkroom_script.so, a console and
-# controllers in Lua, and libdarkroom_hud.so, documents of the interface; or libdarkroom.a, the first of these as an
-# archive (DARKROOM_STATIC). In the tree and installed they are Darkroom::c, and Darkroom::darkroom, looks, script, hud and
-# static. Included after the folders they are made of; installed by cmake/install/library.
+# controllers in Lua, and libdarkroom_hud.so, documents of the interface. The first of each are archives as well,
+# libdarkroom_c.a and libdarkroom.a (DARKROOM_STATIC). In the tree and installed they are Darkroom::c and c_static, and
+# Darkroom::darkroom, looks, script, hud and static. Included after the folders they are made of; installed by cmake/install/library.
 # Two libraries of the same objects, because a C++ interface over the C one would write every class a second time.
 
 # Of the library's symbols the host sees those that the version script lets through. On Windows the functions of C are

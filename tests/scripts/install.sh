@@ -38,6 +38,11 @@ CXXFLAGS=${flags[*]} LDFLAGS=$kept cmake -S "$tree/tests/package" -B "$work/cmak
 cmake --build "$work/cmake" >"$work/log" || { cat "$work/log" && exit 1; }
 "$work/cmake/package"
 "$work/cmake/package_c"
+# By themselves: no library of ours beside them.
+if [[ -x $work/cmake/package_c_static ]]; then
+    LD_LIBRARY_PATH="" "$work/cmake/package_c_static"
+    ! readelf -d "$work/cmake/package_c_static" | grep 'NEEDED.*darkroom' || exit 1
+fi
 [[ -s $work/cmake/package_c.dkb ]] || { echo "darkroom_bake made nothing" && exit 1; }
 [[ ! -x $work/cmake/script ]] || "$work/cmake/script"
 [[ ! -x $work/cmake/hud ]] || "$work/cmake/hud"

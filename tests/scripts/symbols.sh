@@ -9,7 +9,8 @@ for library in "$@"; do
     [[ $library == *.a ]] && kind=--extern-only
     exported=$(nm $kind --defined-only "$library" | sed -nE 's/^[0-9a-f]+ . //p')
     # Functions, variables, tables, types, guards, what is local in functions, and what DarkroomStatic.cmake renames.
-    ours='_Z(T[VTIS]|GV)?Z*NK?8darkroom|darkroom\.' one=_ZN8darkroom
+    ours='_Z(T[VTIS]|GV)?Z*NK?8darkroom|darkroom_static\.' one=_ZN8darkroom
+    [[ $library == */libdarkroom_c.a ]] && ours='darkroom_[a-z0-9_]+$|darkroom_c_static\.' one=darkroom_
     [[ $library == */libdarkroom.so* ]] && ours=darkroom_ one=darkroom_
     foreign=$(grep -vE "^($ours)" <<<"$exported" | c++filt || true)
     if [[ -n $foreign ]]; then
