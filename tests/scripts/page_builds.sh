@@ -75,7 +75,7 @@ done
 [[ -s out/embedding_2/embedding_2.dkb ]] || fail "docs/embedding.md: darkroom_bake made nothing"
 
 # And by pkg-config.
-lines_of sh docs/install.md | grep -E '^(export PKG_CONFIG_PATH|c\+\+|cc) ' >lines || fail "docs/install.md has no pkg-config"
+lines_of sh docs/install.md | grep -E '^(export PKG_CONFIG_PATH=|c\+\+ |cc )' >lines || fail "docs/install.md has no pkg-config"
 [[ $(wc -l <lines) == 3 ]] || fail "docs/install.md: other lines of pkg-config than three"
 sed -i "s|/opt/darkroom|$prefix|; /^c/s/ *#.*//; s/^c++ /c++ -O0 -o by_cpp /; s/^cc /cc -o by_c /" lines
 quietly bash -e lines
