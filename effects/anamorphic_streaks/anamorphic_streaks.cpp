@@ -22,6 +22,10 @@ const AnamorphicStreaks& streaks_of(const void* parameters) {
     return *static_cast<const AnamorphicStreaks*>(parameters);
 }
 
+void bright_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {streaks_of(parameters).threshold, 0, 0, 0};
+}
+
 template <std::uint32_t step>
 void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const double decay = anamorphic_streaks_decay(streaks_of(parameters), context.frame_extent.width,
@@ -36,10 +40,7 @@ void line_constants(const void* parameters, const PassContext& context, std::spa
 void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
     const auto image = [&](const std::string& name) { return builder.create({.name = name, .denominator = part}); };
-    const PassImage light = builder.add({.name = "bright",
-                                         .shader = "anamorphic_streaks_bright.glsl",
-                                         .inputs = {{.name = "anamorphic_streaks_source", .image = builder.source()}},
-                                         .output = image("bright")});
+    const PassImage light = add_bright_light(builder, builder.source(), part, bright_constants);
     PassImage right = light, left = light;
     const auto inputs = [&] {
         return std::vector<KernelPassDesc::Input>{{.name = "anamorphic_streaks_right", .image = right},

@@ -22,6 +22,10 @@ constexpr auto halation_rows =
 
 const Halation& halation_of(const void* parameters) { return *static_cast<const Halation*>(parameters); }
 
+void bright_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {halation_of(parameters).threshold, 0, 0, 0};
+}
+
 template <bool is_far, bool is_down>
 void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const VkExtent2D extent = context.output_extent;
@@ -32,30 +36,15 @@ void line_constants(const void* parameters, const PassContext& context, std::spa
 template <bool is_far>
 PassImage blurred(PassBuilder& builder, PassImage image, std::uint32_t part) {
     const std::string name = is_far ? "far" : "near";
-    const auto line = [&](const std::string& way, ConstantsFunction constants) {
-        image = builder.add({.name = name + " " + way,
-                             .shader = "halation_line.glsl",
-                             .inputs = {{.name = "halation_light", .image = image}},
-                             .output = builder.create({.name = name + " " + way, .denominator = part}),
-                             .custom_vectors = light_line_vectors,
-                             .constants = constants});
-    };
-    line("across", line_constants<is_far, false>);
-    line("down", line_constants<is_far, true>);
-    return image;
+    image = add_light_line(builder, image, name + " across", part, line_constants<is_far, false>);
+    return add_light_line(builder, image, name + " down", part, line_constants<is_far, true>);
 }
 
 void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
-    const PassImage bright = builder.add({.name = "bright",
-                                          .shader = "halation_bright.glsl",
-                                          .inputs = {{.name = "halation_source", .image = builder.picture()}},
-                                          .output = builder.create({.name = "bright", .denominator = part})});
+    const PassImage bright = add_bright_light(builder, builder.picture(), part, bright_constants);
     const PassImage near = blurred<false>(builder, bright, part);
-    const PassImage quarter = builder.add({.name = "quarter",
-                                           .shader = "halation_quarter.glsl",
-                                           .inputs = {{.name = "halation_light", .image = near}},
-                                           .output = builder.create({.name = "quarter", .denominator = 4 * part})});
+    const PassImage quarter = add_quarter_light(builder, near, 4 * part);
     builder.side("halation_near", near, {0, 0, 0, 0});
     builder.side("halation_far", blurred<true>(builder, quarter, 4 * part), {0, 0, 0, 0});
 }

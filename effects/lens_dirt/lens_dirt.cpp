@@ -23,6 +23,10 @@ constexpr auto lens_dirt_rows = describe(
 
 const LensDirt& dirt_of(const void* parameters) { return *static_cast<const LensDirt*>(parameters); }
 
+void bright_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {dirt_of(parameters).threshold, 0, 0, 0};
+}
+
 template <bool is_down>
 void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     fill_light_line(out, context.output_extent, is_down,
@@ -42,24 +46,10 @@ PassImage dirt_image(PassBuilder& builder) {
 
 void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
-    PassImage light = builder.add({.name = "bright",
-                                   .shader = "lens_dirt_bright.glsl",
-                                   .inputs = {{.name = "lens_dirt_source", .image = builder.source()}},
-                                   .output = builder.create({.name = "bright", .denominator = part})});
-    light = builder.add({.name = "quarter",
-                         .shader = "lens_dirt_quarter.glsl",
-                         .inputs = {{.name = "lens_dirt_light", .image = light}},
-                         .output = builder.create({.name = "quarter", .denominator = 4 * part})});
-    const auto line = [&](const std::string& name, ConstantsFunction constants) {
-        light = builder.add({.name = name,
-                             .shader = "lens_dirt_line.glsl",
-                             .inputs = {{.name = "lens_dirt_light", .image = light}},
-                             .output = builder.create({.name = name, .denominator = 4 * part}),
-                             .custom_vectors = light_line_vectors,
-                             .constants = constants});
-    };
-    line("across", line_constants<false>);
-    line("down", line_constants<true>);
+    PassImage light = add_bright_light(builder, builder.source(), part, bright_constants);
+    light = add_quarter_light(builder, light, 4 * part);
+    light = add_light_line(builder, light, "across", 4 * part, line_constants<false>);
+    light = add_light_line(builder, light, "down", 4 * part, line_constants<true>);
     builder.side("lens_dirt_light", light, {0, 0, 0, 0});
     builder.side("lens_dirt_dirt", dirt_image(builder), {});
 }

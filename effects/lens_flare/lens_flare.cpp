@@ -27,6 +27,10 @@ constexpr std::uint32_t most_ghosts = 16;
 
 const LensFlare& flare_of(const void* parameters) { return *static_cast<const LensFlare*>(parameters); }
 
+void bright_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {flare_of(parameters).threshold, 0, 0, 0};
+}
+
 void part_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const LensFlare& flare = flare_of(parameters);
     out[0] = {static_cast<float>(context.frame_extent.width) / static_cast<float>(context.frame_extent.height),
@@ -42,10 +46,7 @@ void part_constants(const void* parameters, const PassContext& context, std::spa
 
 void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
-    const PassImage bright = builder.add({.name = "bright",
-                                          .shader = "lens_flare_bright.glsl",
-                                          .inputs = {{.name = "lens_flare_source", .image = builder.source()}},
-                                          .output = builder.create({.name = "bright", .denominator = part})});
+    const PassImage bright = add_bright_light(builder, builder.source(), part, bright_constants);
     const PassImage light = builder.add({.name = "blur",
                                          .shader = "lens_flare_blur.glsl",
                                          .inputs = {{.name = "lens_flare_light", .image = bright}},

@@ -12,6 +12,7 @@
 #include <darkroom/pass_builder.hpp>
 #include <darkroom/reference.hpp>
 #include <span>
+#include <string>
 
 #include "shared/halve_reference.hpp"
 #include "shared/sample_reference.hpp"
@@ -24,6 +25,17 @@ inline std::uint32_t bright_part(VkExtent2D extent) {
     std::uint32_t part = 4;
     while (part < 32 && extent.height >= part * 405) part *= 2;
     return part;
+}
+
+/// The pass that makes the small picture; `constants` say the threshold, as custom[0].x.
+inline PassImage add_bright_light(PassBuilder& builder, PassImage source, std::uint32_t part,
+                                  ConstantsFunction constants) {
+    return builder.add({.name = "bright",
+                        .shader = "shared/bright_light.glsl",
+                        .inputs = {{.name = "bright_source", .image = source}},
+                        .output = builder.create({.name = "bright", .denominator = part}),
+                        .custom_vectors = 1,
+                        .constants = constants});
 }
 
 /// The mean of bilinear taps, two pixels apart, of each what exceeds the threshold: c max(b - threshold, 0) / b,
@@ -86,6 +98,17 @@ inline void fill_light_line(std::span<PassVector> out, VkExtent2D extent, bool i
               static_cast<float>(weights[0]), pairs};
 }
 
+/// The pass; `constants` are by fill_light_line().
+inline PassImage add_light_line(PassBuilder& builder, PassImage source, const std::string& name, std::uint32_t part,
+                                ConstantsFunction constants) {
+    return builder.add({.name = name,
+                        .shader = "shared/light_line.glsl",
+                        .inputs = {{.name = "line_source", .image = source}},
+                        .output = builder.create({.name = name, .denominator = part}),
+                        .custom_vectors = light_line_vectors,
+                        .constants = constants});
+}
+
 inline ReferenceImage blur_light_reference(const ReferenceImage& image, double variance) {
     const auto weights = light_weights(variance);
     constexpr auto reach = static_cast<std::int64_t>(light_reach);
@@ -101,6 +124,14 @@ inline ReferenceImage blur_light_reference(const ReferenceImage& image, double v
                                                 weight);
                 }
     return out;
+}
+
+/// The pass that makes a picture with a quarter of the sides.
+inline PassImage add_quarter_light(PassBuilder& builder, PassImage source, std::uint32_t part) {
+    return builder.add({.name = "quarter",
+                        .shader = "shared/quarter_light.glsl",
+                        .inputs = {{.name = "quarter_source", .image = source}},
+                        .output = builder.create({.name = "quarter", .denominator = part})});
 }
 
 /// Of about a quarter of the sides: the mean of four bilinear taps.

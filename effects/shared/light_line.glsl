@@ -3,12 +3,12 @@
 // many steps away a bilinear tap lies, and what it counts.
 
 vec4 shade(Pixel pixel) {
-    vec3 sum = sample_linear(halation_light, pixel.uv).rgb * custom[0].z;
+    vec3 sum = sample_linear(line_source, pixel.uv).rgb * custom[0].z;
     int pairs = int(custom[0].w);
     for (int i = 0; i < pairs; ++i) {
         vec2 tap = (i & 1) == 0 ? custom[1 + i / 2].xy : custom[1 + i / 2].zw;
         vec2 reach = custom[0].xy * tap.x;
-        sum += (sample_linear(halation_light, pixel.uv - reach).rgb + sample_linear(halation_light, pixel.uv + reach).rgb) *
+        sum += (sample_linear(line_source, pixel.uv - reach).rgb + sample_linear(line_source, pixel.uv + reach).rgb) *
                tap.y;
     }
     return vec4(sum, 1.0);
