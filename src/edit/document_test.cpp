@@ -176,6 +176,37 @@ TEST_F(Document, SaveWritesTheEditedValuesAlone) {
     EXPECT_EQ(text_of(path), "# mine\n[post_process]  # all\nexposure = 1.0 # bright\n");
 }
 
+TEST_F(Document, WhatACameraSaysStandsInTheLookWhereItIsChanged) {
+    if (find_effect("depth_of_field") == nullptr) GTEST_SKIP() << "this build has no effect depth_of_field";
+    const std::string camera = "[camera]\nfocus = 3\naperture = 4\n";
+    const auto focus = [](LookDocument& document, float value) {
+        const std::array words{std::bit_cast<std::uint32_t>(value)};
+        return document.edit("Focus", [&](Look& look) {
+            return set_value(look, "depth_of_field", "focus_distance", words);
+        });
+    };
+    const fs::path path = write("a.scene.toml", camera + "[post_process]\nexposure = 1.0\n");
+    LookDocument document = open(path, {.is_scene = true});
+    must(expose(document, 2.5f));
+    must(document.save());
+    EXPECT_EQ(text_of(path), camera + "[post_process]\nexposure = 2.5\n");
+    must(focus(document, 5));
+    must(document.save());
+    EXPECT_EQ(text_of(path), camera + "[post_process]\nexposure = 2.5\ndepth_of_field_focus_distance = 5.0\n");
+
+    const fs::path stack = write("b.scene.toml", camera + "[[stack]]\neffect = \"exposure\"\n");
+    LookDocument other = open(stack, {.is_scene = true});
+    must(other.edit("Add", [](Look& look) {
+        look.entries.push_back(flat_entry(*find_effect("depth_of_field"), LookOrder::SceneLinear));
+        return Result<>{};
+    }));
+    must(other.save());
+    const std::string text = text_of(stack);
+    EXPECT_TRUE(text.find("focus_distance = 5.0\n") != std::string::npos) << text;
+    EXPECT_TRUE(text.find("f_stop = 2.8") != std::string::npos) << text;
+    EXPECT_TRUE(text.find("sensor_height") == std::string::npos) << text;
+}
+
 TEST_F(Document, WhatOthersWroteIsNotOverwritten) {
     const fs::path path = write("a.toml", "[post_process]\nexposure = 1.0\n");
     LookDocument document = open(path);

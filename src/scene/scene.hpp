@@ -30,6 +30,13 @@ struct CameraKey {
     float field_of_view = 45;  ///< vertical, degrees
 };
 
+/// What a camera says of its lens.
+struct Lens {
+    std::optional<float> aperture;       ///< f-stop
+    std::optional<float> focus;          ///< distance along the view axis, metres
+    std::optional<float> sensor_height;  ///< millimetres
+};
+
 struct Camera {
     bool is_given = false;  ///< the file has a [camera]; without one the view is fitted to what the scene holds
     Projection projection = Projection::Perspective;
@@ -37,6 +44,7 @@ struct Camera {
     vec3 position{0, 0, 15}, target{0};
     float field_of_view = 45;  ///< vertical, degrees
     float near_distance = 0.1F, far_distance = 1000;
+    Lens lens;
     std::vector<CameraKey> path;  ///< [[camera.path]]: goes before position, target and fov
 };
 

@@ -286,6 +286,42 @@ TEST_F(CliRenderPixels, ALensIsSampledAndNotBlurredAgain) {
     }
 }
 
+// What [camera] says of its lens makes the same pictures as the flags that say so.
+TEST_F(CliRenderPixels, TheScenesCameraSaysItsLens) {
+    std::string text = yard;
+    text.insert(text.find("fov = 50"), "aperture = 0.5\nfocus = 3\nsensor_height = 400\n");
+    const auto drawn = [&](const std::string& scene, std::vector<std::string> flags) {
+        const std::string file = write("lens.scene.toml", scene);
+        flags.insert(flags.begin(), {"render", file, "-o", path("lens.png"), "--size", "96x64", "--samples", "4"});
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return content(path("lens.png"));
+    };
+    const auto with = [](std::vector<std::string> flags, const std::vector<std::string>& more) {
+        flags.insert(flags.end(), more.begin(), more.end());
+        return flags;
+    };
+    const std::vector<std::string> on{"--depth-of-field-enabled", "on"};
+    EXPECT_TRUE(drawn(text, {}) == drawn(yard, {})) << "by itself it blurs nothing";
+    const std::string blurred = drawn(text, on);
+    EXPECT_FALSE(blurred == drawn(yard, on));
+    EXPECT_TRUE(blurred == drawn(yard, with(on, {"--depth-of-field-f-stop", "0.5", "--depth-of-field-focus-distance",
+                                                 "3", "--depth-of-field-sensor-height", "400"})));
+    const std::vector<std::string> look = with(on, {"--look", write("plain.toml", "[post_process]\nexposure = 0.25\n")});
+    EXPECT_TRUE(drawn(text, look) == drawn(yard, with(look, {"--depth-of-field-f-stop", "0.5",
+                                                             "--depth-of-field-focus-distance", "3",
+                                                             "--depth-of-field-sensor-height", "400"})))
+        << "the look of another file";
+    const std::vector<std::string> farther = with(on, {"--depth-of-field-focus-distance", "9"});
+    EXPECT_FALSE(drawn(text, farther) == blurred) << "a flag goes first";
+
+    const std::vector<std::string> open{"--aperture", "0.5"};
+    const std::string seen = drawn(text, open);
+    EXPECT_TRUE(seen == drawn(yard, with(open, {"--focus", "3", "--sensor-height", "400"})));
+    EXPECT_FALSE(seen == drawn(text, with(open, {"--focus", "9"})));
+    EXPECT_FALSE(seen == drawn(text, with(open, {"--sensor-height", "40"})));
+}
+
 TEST_F(CliRenderPixels, TheOverlayIsTheEdgesOfTriangles) {
     const Picture plain = rendered({"--no-grid"}), lines = rendered({"--no-grid", "--wireframe-overlay"});
     const Eye eye;

@@ -14,7 +14,6 @@
 #include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "image/table/resource_file.hpp"
-#include "looks/look_parts.hpp"
 
 namespace app {
 
@@ -281,15 +280,17 @@ Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
     return {};
 }
 
-Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
-    return look(file.empty() ? scene : std::filesystem::path(file), darkroom::default_look());
+Result<Look> LookFlags::look(const std::filesystem::path& scene, const darkroom::CameraLens& lens) const {
+    return look(file.empty() ? scene : std::filesystem::path(file), darkroom::default_look(), lens);
 }
 
-Result<Look> LookFlags::look_of_frames() const { return look(file, darkroom::default_look_of_traced_light()); }
+Result<Look> LookFlags::look_of_frames() const { return look(file, darkroom::default_look_of_traced_light(), {}); }
 
-Result<Look> LookFlags::look(const std::filesystem::path& path, const Look& without_path) const {
+Result<Look> LookFlags::look(const std::filesystem::path& path, const Look& without_path,
+                             const darkroom::CameraLens& lens) const {
     std::vector<std::string> warnings;
-    Result<Look> look = path.empty() ? Result<Look>(without_path) : darkroom::read_look(path, options(&warnings));
+    Result<Look> look =
+        path.empty() ? Result<Look>(without_path) : darkroom::read_look(path, options(&warnings), lens);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
     resolve_ui(*look, path.parent_path());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "flags.hpp"
+#include "looks/look_parts.hpp"
 
 namespace app {
 
@@ -25,8 +26,9 @@ class LookFlags {
     /// `has_look_flag`: false where the look is a positional argument. `named`: effects of files.
     void add_to(CommandFlags command, bool has_look_flag, std::span<const darkroom::LookEntry> named);
     /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene. The
-    /// document of its interface is as it can be opened.
-    [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
+    /// document of its interface is as it can be opened. `lens`: of the camera that it is for.
+    [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {},
+                                                        const darkroom::CameraLens& lens = {}) const;
     /// The same for frames of files, whose light nobody knows: without a file, default_look_of_traced_light().
     [[nodiscard]] darkroom::Result<darkroom::Look> look_of_frames() const;
     /// How it reads the files of looks. `warnings` outlives what is returned.
@@ -63,7 +65,8 @@ class LookFlags {
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& path,
-                                                        const darkroom::Look& without_path) const;
+                                                        const darkroom::Look& without_path,
+                                                        const darkroom::CameraLens& lens) const;
     [[nodiscard]] darkroom::Result<> lay_layers(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look) const;

@@ -96,8 +96,11 @@ class Render {
     Result<> check() {
         if (Result<> done = read_flags(); !done) return done;
         // Its prefabs are read with it; what a scene only warns of, each run tells.
-        if (!scene::is_model_path(flags_.scene))
-            if (const Result<scene::Scene> scene = read_scene(); !scene) return failure(scene.error());
+        if (!scene::is_model_path(flags_.scene)) {
+            Result<scene::Scene> scene = read_scene();
+            if (!scene) return failure(std::move(scene));
+            scene_ = std::move(*scene);
+        }
         return read_look();
     }
 
@@ -125,8 +128,12 @@ class Render {
     }
 
     Result<> read_look() {
+        const scene::Lens& lens = scene_.camera.lens;
+        flags_.add_lens_of(scene_.camera, job_.desc.lens);
         // Models hold no look.
-        Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
+        Result<darkroom::Look> look = flags_.look.look(
+            scene::is_model_path(flags_.scene) ? "" : flags_.scene,
+            {.aperture = lens.aperture, .focus = lens.focus, .sensor_height = lens.sensor_height});
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         if (Result<> done = check_ui_files(look_); !done) return done;

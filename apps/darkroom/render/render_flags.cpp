@@ -55,12 +55,13 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
         .group(SceneFlags::drawing_group);
     focus_.add_to(command, "Distance along the view axis that such a lens is focused at")
         .type_name("METRES")
-        .default_str("that of the camera's target")
+        .default_str("that of the scene's camera, else of its target")
         .group(SceneFlags::drawing_group);
     sensor_height_
         .add_to(command, "Height of the sensor behind the lens; with the field of view it gives the focal length")
         .type_name("MM")
-        .default_str(fmt::format("{}", darkroom::render::LensDesc().sensor_height))
+        .default_str(
+            fmt::format("that of the scene's camera, else {}", darkroom::render::LensDesc().sensor_height))
         .group(SceneFlags::drawing_group);
     render_scale_
         .add_to(command,
@@ -176,6 +177,11 @@ Result<> RenderFlags::set_lens(RenderJob& job) const {
     // So that highlights keep their light.
     job.desc.is_mean_weighed = !has_lens();
     return {};
+}
+
+void RenderFlags::add_lens_of(const darkroom::scene::Camera& camera, darkroom::render::LensDesc& lens) const {
+    if (!focus_.is_given()) lens.focus_distance = camera.lens.focus.value_or(lens.focus_distance);
+    if (!sensor_height_.is_given()) lens.sensor_height = camera.lens.sensor_height.value_or(lens.sensor_height);
 }
 
 Result<RenderJob> RenderFlags::job() const {

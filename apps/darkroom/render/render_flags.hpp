@@ -66,6 +66,8 @@ class RenderFlags {
     [[nodiscard]] darkroom::Result<std::uint32_t> samples(std::uint32_t of_scene) const;
     [[nodiscard]] bool has_samples() const { return samples_.is_given(); }
     [[nodiscard]] bool has_lens() const { return aperture_.is_given(); }
+    /// Of a lens what the scene's camera says and no flag does.
+    void add_lens_of(const darkroom::scene::Camera& camera, darkroom::render::LensDesc& lens) const;
 
   private:
     void add_moments(CommandFlags command);

@@ -12,6 +12,7 @@
 #include "edit/splice/toml_editor.hpp"
 #include "looks/apply/look_resources.hpp"
 #include "looks/apply/look_stack.hpp"
+#include "looks/look_parts.hpp"
 #include "toml/toml_text.hpp"
 
 namespace darkroom::edit {
@@ -145,7 +146,9 @@ class Splicer {
                    (!row.formerly.empty() && has_key(table, flat_key(effect, row.formerly)));
         };
         const auto is_same_row = [&](const ParamInfo& row) {
-            const bool is_said = is_row_said(row), is_known = is_said || is_reach(*entry.effect, row);
+            const bool is_said = is_row_said(row), is_of_camera = is_said_by_camera(entry, row);
+            if (!is_said && is_of_camera && before == nullptr) return false;
+            const bool is_known = is_said || is_of_camera || is_reach(*entry.effect, row);
             const LookEntry& other = before != nullptr && is_known ? *before : plain;
             return is_said ? is_said_alike(other, entry, row) : has_same(other, entry, row);
         };
@@ -277,8 +280,16 @@ class Splicer {
         return {};
     }
 
+    /// Does the camera of a scene say it where the look does not?
+    bool is_said_by_camera(const LookEntry& entry, const ParamInfo& row) const {
+        return entry.effect->parameters.find("focus_distance") != nullptr &&
+               std::ranges::any_of(lens_keys, [&](const LensKey& key) {
+                   return key.row == row.name && editor_.contains({"camera", std::string(key.key)});
+               });
+    }
+
     /// What a new entry has to say.
-    static std::vector<std::string> pairs_of(const LookEntry& entry) {
+    std::vector<std::string> pairs_of(const LookEntry& entry) const {
         std::vector<std::string> out;
         const auto say = [&](std::string_view key, std::string_view value) {
             out.push_back(fmt::format("{} = {}", key, value));
@@ -291,7 +302,7 @@ class Splicer {
         for (const ParamInfo& row : entry_rows.rows)
             if (const std::string text = format(row, state); text != format(row, state_plain)) say(row.name, text);
         for (const ParamInfo& row : entry.effect->parameters.rows)
-            if (!has_same(plain, entry, row)) say(row.name, value_text(entry, row));
+            if (!has_same(plain, entry, row) || is_said_by_camera(entry, row)) say(row.name, value_text(entry, row));
         return out;
     }
 

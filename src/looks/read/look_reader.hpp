@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "looks/apply/look_resources.hpp"
+#include "looks/look_parts.hpp"
 #include "toml/toml_text.hpp"
 
 namespace darkroom {
@@ -18,8 +19,8 @@ enum class Weight : std::uint8_t { Slip, Wrong };
 
 class LookReader {
   public:
-    LookReader(std::string shown_name, const LookOptions& options)
-        : options_(options), shown_name_(std::move(shown_name)), files_(options.folder, options) {}
+    LookReader(std::string shown_name, const LookOptions& options, const CameraLens& lens = {})
+        : options_(options), shown_name_(std::move(shown_name)), lens_(lens), files_(options.folder, options) {}
 
     [[nodiscard]] Result<Look> read(const toml::table& file);
     [[nodiscard]] const LookOptions& options() const { return options_; }
@@ -38,6 +39,9 @@ class LookReader {
     void take(const WireInfo& wire, LookEntry& entry, const std::string& file, const toml::node& node);
     /// The same for one of the entry's own values.
     bool take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key);
+    /// Gives an effect that is told where a lens is focused what the camera says of it, but for the rows that the file
+    /// writes. What a row does not allow is for the reader of scenes to report.
+    void put_lens(LookEntry& entry, const std::function<bool(std::string_view row)>& is_written) const;
     /// `allowed` says what the nearest known key takes. `meant`: the known key that it stands for; empty: the nearest.
     void report_unknown(const toml::key& key, const toml::node& node, std::span<const std::string> known,
                         const std::function<std::string(const std::string&)>& allowed, const std::string& meant = {});
@@ -52,10 +56,12 @@ class LookReader {
     };
 
     void read_top(const toml::table& file);
+    void read_lens(const toml::table& file);
     Result<Look> finish(Look look);
 
     const LookOptions& options_;
     std::string shown_name_;
+    CameraLens lens_;
     ResourceFiles files_;
     std::vector<Problem> problems_;
 };

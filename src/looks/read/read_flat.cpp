@@ -151,7 +151,16 @@ class FlatReader {
 }  // namespace
 
 Look read_flat(LookReader& reader, const toml::node* node) {
-    if (node == nullptr) return default_look();
+    const auto with_lens = [&](Look look) {
+        for (LookEntry& entry : look.entries)
+            reader.put_lens(entry, [&](std::string_view row) {
+                return std::ranges::any_of(look.written, [&](const WrittenValue& value) {
+                    return value.effect == entry.effect && value.parameter == row;
+                });
+            });
+        return look;
+    };
+    if (node == nullptr) return with_lens(default_look());
     const toml::table* const table = node->as_table();
     // Files that name no order were made for the documented one, whose defaults lie under what they say.
     const std::optional<std::string> order = table == nullptr ? std::nullopt : (*table)["order"].value<std::string>();
@@ -162,7 +171,7 @@ Look read_flat(LookReader& reader, const toml::node* node) {
         FlatReader(reader, look, false).read(*table);
     else
         reader.report(*node, Weight::Wrong, fmt::format("post_process = {}: expected a table", show(*node)));
-    return look;
+    return with_lens(std::move(look));
 }
 
 void read_ui(LookReader& reader, Look& look, const toml::node& node) {

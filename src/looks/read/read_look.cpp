@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <darkroom/look.hpp>
 
 #include "core/caught.hpp"
@@ -14,6 +15,7 @@ namespace darkroom {
 
 Result<Look> LookReader::read(const toml::table& file) {
     read_top(file);
+    if (options_.is_scene) read_lens(file);
     const toml::node* const flat = file.get("post_process");
     const toml::node* const stack = file.get("stack");
     if (flat != nullptr && stack != nullptr)
@@ -37,6 +39,26 @@ void LookReader::read_top(const toml::table& file) {
     if (number == nullptr || number->get() != Look::format)
         report(*format, Weight::Wrong,
                fmt::format("format = {}: this build reads format {}", show(*format), Look::format));
+}
+
+void LookReader::read_lens(const toml::table& file) {
+    const toml::table* const camera = file["camera"].as_table();
+    if (camera == nullptr) return;
+    for (const LensKey& key : lens_keys)
+        if (const std::optional<double> value = (*camera)[key.key].value<double>(); value && !(lens_.*key.member))
+            lens_.*key.member = static_cast<float>(*value);
+}
+
+void LookReader::put_lens(LookEntry& entry, const std::function<bool(std::string_view row)>& is_written) const {
+    const ParamTable& rows = entry.effect->parameters;
+    if (rows.find("focus_distance") == nullptr) return;
+    for (const LensKey& key : lens_keys) {
+        const std::optional<float>& value = lens_.*key.member;
+        const ParamInfo* const row = rows.find(key.row);
+        if (!value || row == nullptr || row->kind != Kind::Float || is_written(key.row)) continue;
+        const auto word = std::bit_cast<std::uint32_t>(*value);
+        if (check_words(*row, {&word, 1})) entry.words[row->word] = word;
+    }
 }
 
 bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
@@ -121,11 +143,20 @@ Result<Look> LookReader::finish(Look look) {
     return look;
 }
 
-Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) try {
+namespace {
+
+Result<Look> parse(std::string_view text, const std::string& shown_name, const LookOptions& options,
+                   const CameraLens& lens) {
     std::string shown = printable(shown_name);
     const Result<toml::table> file = parse_toml(text, shown);
     if (!file) return failure(file.error());
-    return LookReader(std::move(shown), options).read(*file);
+    return LookReader(std::move(shown), options, lens).read(*file);
+}
+
+}  // namespace
+
+Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) try {
+    return parse(text, shown_name, options, {});
 } catch (...) {
     return caught("parse_look");
 }
@@ -136,14 +167,18 @@ Result<std::string> read_look_text(const std::filesystem::path& path) {
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) try {
+Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options, const CameraLens& lens) try {
     const Result<std::string> text = read_look_text(path);
     if (!text) return failure(text.error());
     LookOptions here = options;
     if (here.folder.empty()) here.folder = path.parent_path();
-    return parse_look(*text, path.string(), here);
+    return parse(*text, path.string(), here, lens);
 } catch (...) {
     return caught("read_look");
+}
+
+Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
+    return read_look(path, options, {});
 }
 
 }  // namespace darkroom

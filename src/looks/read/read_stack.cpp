@@ -54,6 +54,7 @@ class StackReader {
         LookEntry& entry = *made;
         for (const auto& [key, node] : table)
             if (key.str() != "effect") read_key(entry, key, node);
+        reader_.put_lens(entry, [&](std::string_view row) { return table.contains(row); });
         look_.entries.push_back(std::move(entry));
         origins_.push_back({&table, number_});
     }

@@ -282,6 +282,10 @@ void read_camera(TableReader& table, Camera& camera) {
         camera.near_distance = usual.near_distance;
         camera.far_distance = usual.far_distance;
     }
+    // Those that `render` and depth of field take.
+    table.number("aperture", camera.lens.aperture, {.low = 0.5, .high = 64});
+    table.number("focus", camera.lens.focus, {.low = 0.01, .high = 1e5, .unit = "m"});
+    table.number("sensor_height", camera.lens.sensor_height, {.low = 1, .high = 1000, .unit = "mm"});
     const CameraKey rest{.position = camera.position, .target = camera.target, .field_of_view = camera.field_of_view};
     read_path(table, camera.path, rest, [&](TableReader& reader, CameraKey& key) {
         reader.vector("position", key.position);

@@ -81,6 +81,13 @@ TEST(SceneError, OutOfRangeIsAWarningWithTheValueUsed) {
     EXPECT_EQ(warning_of("[camera]\nfov = 180\n"),
               "a.toml:2:7: camera.fov = 180: allowed is (0, 180) degrees; 45 is used");
     EXPECT_EQ(scene_despite("[camera]\nfov = 180\n").camera.field_of_view, 45);
+    EXPECT_EQ(warning_of("[camera]\naperture = 0.4\n"),
+              "a.toml:2:12: camera.aperture = 0.4: allowed is [0.5, 64]; the default is used");
+    EXPECT_EQ(warning_of("[camera]\nfocus = 0\n"),
+              "a.toml:2:9: camera.focus = 0: allowed is [0.01, 100000] m; the default is used");
+    EXPECT_EQ(warning_of("[camera]\nsensor_height = 1001\n"),
+              "a.toml:2:17: camera.sensor_height = 1001: allowed is [1, 1000] mm; the default is used");
+    EXPECT_FALSE(scene_despite("[camera]\nfocus = 0\n").camera.lens.focus);
     EXPECT_EQ(warning_of("[entities.a.light]\ncolor = [1, -1, 0]\n"),
               "a.toml:2:13: entities.a.light.color[1] = -1: allowed is [0, 1000000]; 1 is used");
     EXPECT_EQ(scene_despite("[entities.a.light]\ncolor = [1, -1, 0]\n").entities[0].light->color, vec3(1, 1, 0));
@@ -332,6 +339,7 @@ TEST(SceneError, WrongKindsEverywhereNeverCrash) {
                                         "camera.position",
                                         "camera.path",
                                         "camera.fov",
+                                        "camera.focus",
                                         "environment.skybox",
                                         "environment.fog_x",
                                         "entities.a",

@@ -43,6 +43,9 @@ target = { x = 1, y = 2, z = 0 }
 fov = 80
 near = 1
 far = 50
+aperture = 2.8
+focus = 6
+sensor_height = 14
 [environment]
 skybox = "sky.hdr"
 skybox_intensity = 2
@@ -66,6 +69,9 @@ document = "hud.svg"
     EXPECT_EQ(scene.camera.field_of_view, 80);
     EXPECT_EQ(scene.camera.near_distance, 1);
     EXPECT_EQ(scene.camera.far_distance, 50);
+    EXPECT_EQ(scene.camera.lens.aperture, 2.8F);
+    EXPECT_EQ(scene.camera.lens.focus, 6);
+    EXPECT_EQ(scene.camera.lens.sensor_height, 14);
     EXPECT_EQ(scene.environment.skybox, "sky.hdr");
     EXPECT_EQ(scene.environment.skybox_intensity, 2);
     EXPECT_EQ(scene.environment.ambient_color, vec3(1, 0, 0.5F));
