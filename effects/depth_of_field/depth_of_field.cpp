@@ -13,12 +13,19 @@ namespace darkroom {
 
 namespace {
 
-constexpr Unit millimetres{"mm"};
+constexpr Unit millimetres{"mm"}, dioptres_per_second{"1/m/s"};
 constexpr std::int32_t most_rings = 8;
 
 constexpr auto depth_of_field_rows = describe(
     field<&DepthOfField::focus_distance>("Distance along the view axis that is sharp.", {0.01, 1e5, Scale::Log},
                                          unit::metres),
+    field<&DepthOfField::autofocus>(
+        "Focuses on what is seen at `autofocus_place`; `focus_distance` then does not count.")
+        .at_compile(),
+    field<&DepthOfField::autofocus_place>(
+        "Place in the picture that the lens focuses on: (0, 0) is the top left, (1, 1) the bottom right.", {0, 1}),
+    field<&DepthOfField::autofocus_speed>(
+        "Speed of the lens toward another distance, in dioptres (1/m); at 0 it stays.", {0, 100}, dioptres_per_second),
     field<&DepthOfField::f_stop>("Focal length divided by the aperture's diameter: a smaller number blurs more.",
                                  {0.5, 64, Scale::Log}),
     field<&DepthOfField::sensor_height>("Height of the sensor; with the field of view it gives the focal length.",
@@ -37,17 +44,47 @@ constexpr auto depth_of_field_rows = describe(
 
 const DepthOfField& field_of(const void* parameters) { return *static_cast<const DepthOfField*>(parameters); }
 
-/// See depth_of_field_circle.glsl.
-template <std::uint32_t denominator>
-void circle_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+float largest_circle(const DepthOfField& field, const PassContext& context) {
+    return field.max_radius / 100 * static_cast<float>(context.frame_extent.height);
+}
+
+/// See depth_of_field_focus.glsl.
+void focus_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const DepthConstants depth = depth_constants(*context.camera);
+    const double way = std::max(context.delta_time, 0.0) * double{field_of(parameters).autofocus_speed};
+    out[0] = depth.distance;
+    out[1] = {depth.sky, static_cast<float>(way), static_cast<float>(autofocus_farthest),
+              static_cast<float>(autofocus_nearest)};
+}
+
+/// See depth_of_field_focused.glsl.
+void focused_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const DepthOfField& field = field_of(parameters);
     const DepthConstants depth = depth_constants(*context.camera);
-    constexpr float pixels{denominator};
-    const ThinLens lens = depth_of_field_lens(field, *context.camera, context.frame_extent.height);
-    const float limit = field.max_radius / 100 * static_cast<float>(context.frame_extent.height);
+    const AutofocusLens lens = autofocus_lens(field, *context.camera, context.frame_extent.height);
     out[0] = depth.distance;
-    out[1] = {static_cast<float>(lens.infinity) / pixels, static_cast<float>(lens.infinity * lens.focus) / pixels,
-              limit / pixels, depth.sky};
+    out[1] = {static_cast<float>(lens.strength), static_cast<float>(lens.focal), largest_circle(field, context),
+              depth.sky};
+    out[2] = {static_cast<float>(lens.nearest), 0, 0, 0};
+}
+
+/// See depth_of_field_circle.glsl.
+template <std::uint32_t denominator, bool is_focused>
+void circle_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const DepthOfField& field = field_of(parameters);
+    constexpr float pixels{denominator};
+    const float limit = largest_circle(field, context);
+    if (is_focused) {
+        // The depth is what depth_of_field_focused.glsl made of it.
+        out[0] = {0, 1, 1, 0};
+        out[1] = {limit / pixels, 1 / pixels, limit / pixels, -1};
+    } else {
+        const DepthConstants depth = depth_constants(*context.camera);
+        const ThinLens lens = depth_of_field_lens(field, *context.camera, context.frame_extent.height);
+        out[0] = depth.distance;
+        out[1] = {static_cast<float>(lens.infinity) / pixels, static_cast<float>(lens.infinity * lens.focus) / pixels,
+                  limit / pixels, depth.sky};
+    }
     const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
     out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.sharp), static_cast<float>(blur.slope)};
 }
@@ -88,9 +125,32 @@ PassImage add_tiles(PassBuilder& builder, PassImage color) {
     return add("tiles around", "depth_of_field_around.glsl", tiles, tile);
 }
 
-template <std::uint32_t denominator>
+/// Focuses, and makes of the depth what the other passes then take for it.
+PassImage add_autofocus(PassBuilder& builder, PassImage depth) {
+    const PassBuffer focus = builder.value("depth_of_field", 3);
+    builder.add_compute(
+        {.name = "focus",
+         .shader = "depth_of_field_focus.glsl",
+         .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+         .buffers = {{"depth_of_field_focus", focus, ComputePassDesc::Access::ReadWrite, "float"}},
+         .workgroup = {32, 1},
+         .shared_bytes = 4 * autofocus_side * autofocus_side,
+         .groups = {1, 1},
+         .custom_vectors = 2,
+         .constants = focus_constants});
+    return builder.add({.name = "focused",
+                        .shader = "depth_of_field_focused.glsl",
+                        .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                        .output = builder.create({.name = "focused", .format = VK_FORMAT_R32_SFLOAT}),
+                        .values = {{"depth_of_field_focus", focus}},
+                        .custom_vectors = 3,
+                        .constants = focused_constants});
+}
+
+template <std::uint32_t denominator, bool is_focused>
 void build_at(PassBuilder& builder) {
-    const PassImage depth = builder.frame_image(FrameImage::Depth);
+    PassImage depth = builder.frame_image(FrameImage::Depth);
+    if (is_focused) depth = add_autofocus(builder, depth);
     const auto create = [&](const char* name) { return builder.create({.name = name, .denominator = denominator}); };
     const PassImage color =
         builder.add({.name = denominator == 2 ? "half size" : "clean",
@@ -99,7 +159,7 @@ void build_at(PassBuilder& builder) {
                                 {.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
                      .output = create("color and circle"),
                      .custom_vectors = 3,
-                     .constants = circle_constants<denominator>});
+                     .constants = circle_constants<denominator, is_focused>});
     const PassImage tiles = add_tiles(builder, color);
     const std::vector<PassImage> gathered =
         builder.add_all({.name = "gather",
@@ -124,12 +184,25 @@ void build_at(PassBuilder& builder) {
     builder.side("depth_of_field_behind", filled[0], {});
     builder.side("depth_of_field_near", filled[1], {});
     builder.loaded_side("depth_of_field_depth", depth, {});
-    builder.end_constants(3, circle_constants<denominator>);
+    builder.end_constants(3, circle_constants<denominator, is_focused>);
 }
 
 void build(PassBuilder& builder) {
-    const bool is_half = field_of(builder.parameters()).resolution == DepthOfFieldResolution::Half;
-    is_half ? build_at<2>(builder) : build_at<1>(builder);
+    const DepthOfField& field = field_of(builder.parameters());
+    const bool is_half = field.resolution == DepthOfFieldResolution::Half;
+    if (field.autofocus)
+        is_half ? build_at<2, true>(builder) : build_at<1, true>(builder);
+    else
+        is_half ? build_at<2, false>(builder) : build_at<1, false>(builder);
+}
+
+/// Until the lens has come from one end to the other but for a thousandth of a dioptre, by which a circle of 50 mm at
+/// f/1.4 changes by a twentieth of a pixel of 1080 lines.
+std::uint32_t pre_roll(const void* parameters, double delta_time) {
+    const DepthOfField& field = field_of(parameters);
+    if (!field.autofocus) return 0;
+    const double way = autofocus_nearest - autofocus_farthest + autofocus_slow * (std::log(100) - 1);
+    return static_cast<std::uint32_t>(std::min(std::ceil(way / (double{field.autofocus_speed} * delta_time)) + 1, 1e9));
 }
 
 }  // namespace
@@ -147,6 +220,7 @@ const EffectInfo& effect_info(const DepthOfField&) {
         .is_in_traced_light = true,
         .build = build,
         .reference = depth_of_field_reference,
+        .pre_roll = pre_roll,
     };
     return info;
 }

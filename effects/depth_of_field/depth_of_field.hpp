@@ -14,6 +14,12 @@ enum class DepthOfFieldResolution : std::uint32_t { Half, Full };
 struct DepthOfField {
     /// Distance along the view axis that is sharp. [0.01, 100000] m
     float focus_distance = 5.0f;
+    /// Focuses on what is seen at `autofocus_place`; `focus_distance` then does not count.
+    Toggle autofocus = false;
+    /// Place in the picture that the lens focuses on: (0, 0) is the top left, (1, 1) the bottom right. [0, 1]
+    Vec2 autofocus_place{0.5f, 0.5f};
+    /// Speed of the lens toward another distance, in dioptres (1/m); at 0 it stays. [0, 100] 1/m/s
+    float autofocus_speed = 2.0f;
     /// Focal length divided by the aperture's diameter: a smaller number blurs more. [0.5, 64]
     float f_stop = 2.8f;
     /// Height of the sensor; with the field of view it gives the focal length. [1, 1000] mm

@@ -30,6 +30,28 @@ struct ThinLens {
     return {aperture / 2 * focal / (focus - focal) * height / sensor, focus};
 }
 
+/// In dioptres: the nearest and the farthest that a lens focuses at by itself, and from where on it moves the slower the
+/// nearer it is to what it moves toward. It takes the middle one of so many by so many distances about a place, lest a
+/// leaf or a gap count.
+inline constexpr double autofocus_nearest = 10, autofocus_farthest = 1e-5, autofocus_slow = 0.1;
+inline constexpr std::uint32_t autofocus_side = 5;
+
+/// The thin lens for a distance that the GPU knows: focused at D dioptres, the radius of a circle at a distance d is
+/// strength / (1 - focal D) (D - 1 / d) pixels.
+struct AutofocusLens {
+    double strength = 0, focal = 0;
+    double nearest = autofocus_nearest;  ///< dioptres
+};
+
+[[nodiscard]] inline AutofocusLens autofocus_lens(const DepthOfField& field, const Camera& camera, double height) {
+    if (camera.projection[11] == 0.0f) return {};
+    const double sensor = double{field.sensor_height} / 1000;
+    const double focal = sensor / 2 * std::abs(double{camera.projection[5]});
+    return {.strength = focal / double{field.f_stop} / 2 * focal * height / sensor,
+            .focal = focal,
+            .nearest = 1 / (focal * 1.01)};
+}
+
 /// What the passes blur by themselves, as a circle whose radius has the square `own` does, in texels of `step` pixels,
 /// and from which radius on something counts as blurred.
 struct DepthOfFieldBlur {

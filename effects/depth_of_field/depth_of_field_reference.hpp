@@ -26,6 +26,44 @@ inline double depth_of_field_reference_circle(const DepthOfField& field, const C
     return std::clamp(lens.infinity * (1 - lens.focus * inverse), -limit, limit) / step;
 }
 
+/// Where the lens moves to in so many seconds, in dioptres: at constant speed, and at last in proportion to what is left.
+inline double depth_of_field_reference_moved(double dioptres, double target, double speed, double seconds) {
+    const double way = seconds * speed, left = std::abs(target - dioptres);
+    const double steady = std::clamp(left - autofocus_slow, 0.0, way);
+    const double rest = (left - steady) * std::exp((steady - way) / autofocus_slow);
+    return target < dioptres ? target + rest : target - rest;
+}
+
+/// The dioptres of what is seen at the place: the middle one of 5 by 5, a hundredth of the height to each side.
+inline double depth_of_field_reference_seen(const DepthOfField& field, const ReferenceImage& depth) {
+    constexpr std::int64_t side = autofocus_side;
+    const std::int64_t apart = std::max((depth.height + 100) / 200, 1U);
+    const auto x = static_cast<std::int64_t>(field.autofocus_place.x * static_cast<float>(depth.width)),
+               y = static_cast<std::int64_t>(field.autofocus_place.y * static_cast<float>(depth.height));
+    std::array<double, side * side> seen{};
+    for (std::int64_t i = 0; i < side * side; ++i) {
+        const double planar =
+            depth.clamped(x + (i % side - side / 2) * apart, y + (i / side - side / 2) * apart).r;
+        const double inverse = planar < 1e9 ? 1 / std::max(planar, 1e-6) : 0.0;
+        seen[static_cast<std::size_t>(i)] = std::clamp(inverse, autofocus_farthest, autofocus_nearest);
+    }
+    std::ranges::sort(seen);
+    return seen[seen.size() / 2];
+}
+
+/// The distance that is sharp. The history holds the dioptres in red, and in green those that the lens moves toward.
+inline float depth_of_field_reference_focus(const DepthOfField& field, const ReferenceInput& input) {
+    const double target = depth_of_field_reference_seen(field, *input.depth);
+    double dioptres = target;
+    if (input.history != nullptr) {
+        if (const auto past = input.history->find("focus"); past != input.history->end())
+            dioptres = depth_of_field_reference_moved(past->second.at(0, 0).r, past->second.at(0, 0).g,
+                                                      double{field.autofocus_speed}, input.delta_time);
+        (*input.history)["focus"] = ReferenceImage(1, 1, {dioptres, target, 0, 1});
+    }
+    return static_cast<float>(1 / dioptres);
+}
+
 /// Colour, and the circle in alpha.
 inline ReferenceImage depth_of_field_reference_color(const DepthOfField& field, const ReferenceInput& input,
                                                      std::uint32_t step) {
@@ -166,7 +204,8 @@ inline DepthOfFieldFields depth_of_field_reference_gather(const DepthOfField& fi
 }
 
 inline ReferenceImage depth_of_field_reference(const void* parameters, const ReferenceInput& input) {
-    const DepthOfField& field = *static_cast<const DepthOfField*>(parameters);
+    DepthOfField field = *static_cast<const DepthOfField*>(parameters);
+    if (field.autofocus) field.focus_distance = depth_of_field_reference_focus(field, input);
     const ReferenceImage& picture = *input.picture;
     const std::uint32_t step = field.resolution == DepthOfFieldResolution::Half ? 2 : 1;
     const ReferenceImage color = depth_of_field_reference_color(field, input, step);

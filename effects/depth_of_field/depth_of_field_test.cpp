@@ -9,14 +9,18 @@
 #include <vector>
 
 #include "depth_of_field/depth_of_field_reference.hpp"
-#include "develop/test_sequence.hpp"
+#include "depth_of_field/depth_of_field_test_shots.hpp"
 
 namespace darkroom {
 namespace {
 
 using test::Shot;
+using test::depth_of_field::camera_of;
+using test::depth_of_field::height;
+using test::depth_of_field::is_thing;
+using test::depth_of_field::scene;
+using test::depth_of_field::width;
 
-constexpr std::uint32_t width = 96, height = 128;
 constexpr double sharp_m = 4, behind_m = 20, before_m = 2;  // distances, m
 // A large camera, so that circles are some pixels of a small picture wide.
 constexpr DepthOfField half{.focus_distance = 4, .f_stop = 2, .sensor_height = 480, .max_radius = 4};
@@ -26,12 +30,6 @@ DepthOfField at_full(DepthOfField field) {
 }
 const DepthOfField full = at_full(half);
 
-Camera camera_of(std::uint32_t columns, std::uint32_t rows) {
-    Camera camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.9, static_cast<double>(columns) / rows);
-    camera.depth = DepthKind::Planar;
-    return camera;
-}
-
 ReferenceImage on_gpu(const DepthOfField& field, const Shot& shot, KernelStage kernels = KernelStage::Auto) {
     return test::developed_sequence([&](Composer& composer) { composer.add(field); }, {&shot, 1}, kernels)[0];
 }
@@ -40,22 +38,6 @@ ReferenceImage on_cpu(const DepthOfField& field, const Shot& shot) {
 }
 double radius_of(const DepthOfField& field, double distance, std::uint32_t rows = height) {
     return depth_of_field_reference_circle(field, camera_of(rows, rows), distance, rows, 1);
-}
-
-bool is_thing(std::uint32_t x, std::uint32_t y) { return x >= 30 && x < 61 && y >= 41 && y < 88; }
-
-/// A red thing before a striped wall of green and blue.
-Shot scene(double of_thing, double of_wall) {
-    Shot shot{.color = ReferenceImage(width, height),
-              .depth = ReferenceImage(width, height),
-              .camera = camera_of(width, height)};
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) {
-            shot.color.at(x, y) =
-                is_thing(x, y) ? Rgba{1, 0, 0, 0.25} : Rgba{0, (x / 3 + y / 3) % 2 == 0 ? 0.75 : 0.25, 0.5, 0.25};
-            shot.depth.at(x, y) = {is_thing(x, y) ? of_thing : of_wall, 0, 0, 1};
-        }
-    return shot;
 }
 
 /// A dark wall with one bright pixel, or two by two of them.

@@ -99,26 +99,40 @@ TEST_F(ComposePreRoll, GivesThePictureOfAnUnbrokenRun) {
     }
 }
 
-// Of all that ship: who keeps something from frame to frame says for how long it counts.
-TEST(ComposeHistory, WhoeverDeclaresOneStatesItsPreRoll) {
+bool has_history(const EffectInfo& info, const std::vector<std::uint32_t>& words) {
     constexpr ImageUse any{VK_FORMAT_R32G32B32A32_SFLOAT};
+    const plan::Entry entry{
+        .id = 1, .info = &info, .desc = {.second = scene_color, .name = std::string(info.name)}, .base = words};
+    const auto program = plan::plan_program(
+        {&entry, 1}, {.max_extent = {64, 64}, .depth = any, .normals = any, .velocity = any, .ui = any},
+        {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Raster; }});
+    EXPECT_TRUE(program) << info.name << ": " << program.error().text;
+    return program && !program->history_entries.empty();
+}
+
+// Of all that ship, with every toggle that is read at compile off and on: who keeps something from frame to frame says
+// for how long it counts.
+TEST(ComposeHistory, WhoeverDeclaresOneStatesItsPreRoll) {
     for (const EffectInfo* const info : all_effects()) {
-        const plan::Entry entry{.id = 1,
-                                .info = info,
-                                .desc = {.second = scene_color, .name = std::string(info->name)},
-                                .base = {info->parameters.defaults.begin(), info->parameters.defaults.end()}};
-        const auto program = plan::plan_program(
-            {&entry, 1}, {.max_extent = {64, 64}, .depth = any, .normals = any, .velocity = any, .ui = any},
-            {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Raster; }});
-        ASSERT_TRUE(program) << info->name << ": " << program.error().text;
-        const bool has_history = !program->history_entries.empty();
-        EXPECT_TRUE(has_history || info->touch != Touch::History) << info->name;
-        EXPECT_EQ(has_history, info->pre_roll != nullptr) << info->name;
-        if (!has_history || info->pre_roll == nullptr) continue;
-        const auto frames = [&](double delta_time) { return info->pre_roll(entry.base.data(), delta_time); };
-        EXPECT_GT(frames(1.0 / 60), 0u) << info->name;
-        EXPECT_GE(frames(1.0 / 144), frames(1.0 / 30)) << info->name;
-        EXPECT_LT(frames(1.0 / 144), 10'000u) << info->name;
+        std::vector<std::vector<std::uint32_t>> tried{
+            {info->parameters.defaults.begin(), info->parameters.defaults.end()}};
+        for (const ParamInfo& row : info->parameters.rows)
+            if (row.kind == Kind::Toggle && row.is_at_compile) {
+                tried.push_back(tried.front());
+                tried.back()[row.word] ^= 1;
+            }
+        bool has_any = false;
+        for (const std::vector<std::uint32_t>& words : tried) {
+            const bool has_one = has_history(*info, words);
+            has_any |= has_one;
+            EXPECT_TRUE(has_one || info->touch != Touch::History) << info->name;
+            if (info->pre_roll == nullptr) continue;
+            const auto frames = [&](double delta_time) { return info->pre_roll(words.data(), delta_time); };
+            EXPECT_EQ(frames(1.0 / 60) > 0u, has_one) << info->name;
+            EXPECT_GE(frames(1.0 / 144), frames(1.0 / 30)) << info->name;
+            EXPECT_LT(frames(1.0 / 144), 10'000u) << info->name;
+        }
+        EXPECT_EQ(has_any, info->pre_roll != nullptr) << info->name;
     }
 }
 
