@@ -84,7 +84,7 @@ void shade(Pixel pixel, out vec4 result[2]) {
     sums.near /= max(left, sums.near.a);
     result[1] = sums.near;
     if (!is_blurred) return;
-    // A near thing that hides all around is seen through itself.
+    // A near thing that hides all around is seen through itself; one that is hardly a blur is not seen at all.
     vec4 behind = sums.behind.a > 0.0 ? sums.behind : sums.near;
-    result[0] = vec4(behind.rgb / max(behind.a, 1e-6), 1.0);
+    result[0] = behind / max(behind.a, 1e-6);
 }

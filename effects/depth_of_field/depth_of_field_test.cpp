@@ -94,6 +94,17 @@ TEST(EffectDepthOfField, GpuMatchesReference) {
         }
 }
 
+// From half a pixel on, where little of a circle is left to blur.
+TEST(EffectDepthOfField, GpuMatchesReferenceWhereANearThingIsHardlyBlurred) {
+    const Shot shot = scene(3, 9);
+    for (DepthOfField field : {half, full})
+        for (const float focus : {3.1f, 3.2f, 3.33f, 3.5f, 3.7f}) {
+            field.focus_distance = focus;
+            EXPECT_LE(test::worst_difference(on_gpu(field, shot), on_cpu(field, shot)), 0x1p-7)
+                << "a radius of " << radius_of(field, 3) << " pixels";
+        }
+}
+
 TEST(EffectDepthOfField, GpuKeepsTheBitsOfWhatIsSharp) {
     Shot shot = scene(before_m, sharp_m);
     const ReferenceImage noise = test::round_to_float(test::random_hdr(width, height, 5));
