@@ -97,6 +97,7 @@ void Screen::draw(const Input& input) {
                      .watch_state = input.view.watch_state(),
                      .extent = input.extent,
                      .divisor = input.divisor,
+                     .lines = input.lines,
                      .camera = input.camera,
                      .frames_a_second = input.frames_a_second,
                      .last_line = last_line_},

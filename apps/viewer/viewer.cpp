@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -24,12 +25,12 @@ namespace {
 
 /// A longer frame was none: the machine slept, or a driver compiled.
 constexpr double longest_frame = 0.25;
+/// Of a scene to those of its picture. A third is what upscalers are made for, and a step between gains a third.
+constexpr std::array steps_of_lines{1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 1.0 / 3};
 
 bool is_device_lost(const darkroom::Error& error) {
     return error.text.ends_with(darkroom::gpu::result_name(VK_ERROR_DEVICE_LOST));
 }
-
-VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
 
 }  // namespace
 
@@ -65,6 +66,7 @@ Result<> Viewer::open() {
     is_post_on_ = !job_.is_off;
     is_paused_ = job_.is_paused;
     draw_ = job_.scene_desc.render.draw;
+    if (job_.frame_time) lines_.emplace(std::vector(steps_of_lines.begin(), steps_of_lines.end()), *job_.frame_time);
     time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
     previous_time_ = std::max(0.0, time_ - job_.step);
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
@@ -103,6 +105,7 @@ Result<LookView*> Viewer::view(Side side) {
                                                                     .kernels = job_.kernels,
                                                                     .fuse = job_.fuse,
                                                                     .makes_light = is_high_range(),
+                                                                    .enlarges = lines_.has_value(),
                                                                     .keeps = job_.timeline.entries()});
     if (Result<> done = made->show(look_of(side)); !done) return failure(std::move(done));
     view = std::move(made);
@@ -156,11 +159,18 @@ void Viewer::move_time(double passed) {
 }
 
 LiveMoment Viewer::moment() const {
-    LiveMoment out{.time = time_, .previous_time = previous_time_, .draw = draw_, .divisor = divisor_};
+    LiveMoment out{
+        .time = time_,
+        .previous_time = previous_time_,
+        .draw = draw_,
+        .jitter = jitter(),
+        .aspect = static_cast<float>(full_extent_.width) / static_cast<float>(std::max(full_extent_.height, 1U)),
+        .divisor = divisor_};
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
     out.draw.exposure = darkroom::exposure_of(document_->look());
+    out.draw.mip_bias = darkroom::Composer::mip_bias(static_cast<float>(1 / scale_));
     out.number = playback_.number();
     return out;
 }
@@ -185,7 +195,8 @@ Result<> Viewer::show(const PresentFrame& frame) {
     // The first frame, too, has what the game says and controllers set.
     const bool is_menu_open = screen_.has_console() || gui_->has_popup();
     settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
-    divisor_ = choose_divisor();
+    if (Result<> done = begin_timing(frame); !done) return done;
+    choose_scale();
     has_rested_ = has_developed_ = false;
     if (Result<> done = prepare(frame, wanted); !done) return done;
     for (std::size_t side = 0; side < side_count; ++side)
@@ -197,6 +208,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
     if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
     draw_screen(frame);
     if (Result<> done = gui_->draw(frame); !done) return done;
+    end_timing(frame);
     store_window(frame);
     // Who waits for the window may press keys now.
     if (++shown_frames_ == 1) {
@@ -226,6 +238,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .compared_transfer = right.transfer,
                   .extent = full_extent_,
                   .divisor = divisor_,
+                  .lines = scale_,
                   .window = frame.extent,
                   .scale = window_->scale(),
                   .passed = is_fixed() ? delta_time_ : passed_,
@@ -249,100 +262,6 @@ void Viewer::draw_screen(const PresentFrame& frame) {
     if (panels->take_key_sheet()) obey(KeyAction::KeySheet, 0);
     if (const auto file = panels->take_opened()) open_subject(*file);
     if (panels->take_pause()) toggle_pause();
-}
-
-std::array<bool, side_count> Viewer::shown_sides() const {
-    std::array<bool, side_count> out{};
-    out[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
-    if (screen_.is_comparing())
-        for (const Side side : {screen_.left(), screen_.right()})
-            if (side != Side::Other || !other_picture_) out[static_cast<std::size_t>(side)] = true;
-    return out;
-}
-
-// What the frame shows is made in the same commands, before it.
-Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
-    const bool is_first = (*look)->most().width == 0;
-    // Every side asks for the room that is wanted, and frames are as large as all that are shown can take by now.
-    const VkExtent2D wanted = extent;
-    const std::array<bool, side_count> is_shown = shown_sides();
-    for (std::size_t side = 0; side < side_count; ++side) {
-        if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
-        settle(fmt::format("fit {}", side),
-               views_[side]->fit(*source_, wanted, interface_->format(), !wanted_.pictures.empty()));
-        extent = least_of(extent, views_[side]->most());
-    }
-    full_extent_ = extent;
-    extent = {(extent.width + divisor_ - 1) / divisor_, (extent.height + divisor_ - 1) / divisor_};
-    const LiveMoment now = moment();
-    bool must_wait = source_->must_wait(now, extent) || interface_->must_wait(full_extent_, extent);
-    for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(extent));
-    if (EditPanels* const panels = screen_.panels(); panels != nullptr && !is_first)
-        must_wait = must_wait || (*look)->must_wait_to_watch(panels->watched((*look)->composer().current_plan()),
-                                                             panels->watched_level());
-    if (must_wait)
-        if (Result<> done = presenter_->wait(); !done) return done;
-    if (!is_first)
-        if (Result<> done = watch(); !done) return done;
-    if (Result<> done = source_->prepare(now, extent); !done) return done;
-    last_orbit_ = scene_ != nullptr ? std::optional(now.orbit) : std::nullopt;
-    if (is_first)
-        if (Result<> done = (*look)->fit(*source_, extent, interface_->format()); !done) return done;
-    return record(frame, extent);
-}
-
-Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
-    if (Result<> done = source_->record(frame.commands); !done) return done;
-    if (other_picture_) other_picture_->record(*device_, frame.commands);
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
-    for (const auto& any : views_)
-        if (any)
-            if (Result<> done = any->resize(extent); !done) return done;
-    if (const std::optional<darkroom::ImageRef> display = source_->display_picture()) {
-        (*look)->copy(frame.commands, *display);
-        return {};
-    }
-    darkroom::Frame input = source_->frame();
-    if (scene_ != nullptr) {
-        input.time = time_;
-        input.delta_time = delta_time_;
-        input.frame_index = frame_index_;
-        input.camera.is_cut = is_cut_;
-    }
-    const bool is_kept = is_picture_kept();
-    if (interface_->is_given()) {
-        const Result<darkroom::ImageRef> ui =
-            interface_->record(frame.commands, frame.slot, full_extent_, extent, window_->scale());
-        if (!ui) return failure(ui.error());
-        input.ui = *ui;
-    }
-    if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
-    const std::array<bool, side_count> is_shown = shown_sides();
-    for (std::size_t side = 0; side < side_count; ++side)
-        if (is_shown[side] && !(is_kept && views_[side] && views_[side]->is_current()))
-            if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
-    is_cut_ = false;
-    developed_version_ = document_->version();
-    return inspect(frame.commands, input);
-}
-
-Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame) {
-    const Result<LookView*> found = view(side);
-    if (!found) return failure(found.error());
-    LookView& of = **found;
-    const VkExtent2D extent = frame.color.used_region().extent;
-    if (of.most().width == 0)
-        if (Result<> done = of.fit(*source_, full_extent_, interface_->format()); !done) return done;
-    if (Result<> done = of.resize(extent); !done) return done;
-    if (is_fixed()) of.composer().wait_for_kernels();
-    has_developed_ = true;
-    // A plan that does not fit yet is on its way: the picture stays what it was.
-    const Result<> recorded = of.record(commands, frame);
-    if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);
-    return {};
 }
 
 int run_viewer(ViewerJob job) {

@@ -43,7 +43,9 @@ struct ViewerJob {
     bool turns = false;         ///< the camera goes round by itself
     bool is_paused = false;     ///< the time stands still at first
     bool is_full_size = false;  ///< also while something moves, however long frames take
-    bool obeys_input = false;   ///< lines of standard input are the console's commands
+    /// Seconds that the device may take for a frame: a scene is drawn with fewer lines where it needs more.
+    std::optional<double> frame_time;
+    bool obeys_input = false;  ///< lines of standard input are the console's commands
 
     /// For tests and pictures: so many frames, `step` seconds apart, then it ends.
     std::optional<std::uint64_t> frames_to_show;

@@ -85,6 +85,8 @@ void Viewer::let_go_of_device() {
     scope_read_.reset();
     scope_frame_.reset();
     scope_image_ = {};
+    timers_ = {};
+    timed_ = {};
     has_scopes_ = false;
     other_picture_.reset();
     interface_.reset();

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 // How much of a frame is made anew: of a picture that moves fewer pixels, of one that stands nothing.
+#include <cmath>
+
+#include "apps/darkroom/run/jitter.hpp"
+#include "gpu/device/context.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
+
+using darkroom::Result;
 
 namespace {
 
@@ -20,7 +26,7 @@ bool Viewer::is_looked_into() const {
     return panels->pixel() || (look && panels->watched(look->composer().current_plan()) != nullptr);
 }
 
-std::uint32_t Viewer::choose_divisor() {
+void Viewer::choose_scale() {
     const std::chrono::duration<double> still = last_turn_ - moved_at_;
     const bool is_over = still > to_rest + std::chrono::duration<double>(has_rested_ ? 0 : passed_);
     if (source_->is_another(moment()) || developed_version_ != document_->version()) {
@@ -29,12 +35,58 @@ std::uint32_t Viewer::choose_divisor() {
     } else if (is_over) {
         moves_ = 0;
     }
-    if (divisor_ == preview_.divisor() && has_developed_ && !has_rested_) preview_.add(passed_);
+    const auto divisor_of = [](const ScaleChoice& choice) {
+        return static_cast<std::uint32_t>(std::lround(1 / choice.scale()));
+    };
+    if (divisor_ == divisor_of(preview_) && has_developed_ && !has_rested_) preview_.add(passed_);
     // A single step, such as a switch, is shown as it is.
-    return moves_ > 1 && !job_.is_full_size && !is_fixed() && !is_looked_into() ? preview_.divisor() : 1;
+    const bool has_lines = lines_ && scene_ != nullptr;
+    const bool is_moving = moves_ > 1 || (has_lines && gathers() && !is_paused_);
+    const bool is_reduced = is_moving && !job_.is_full_size && !is_fixed() && !is_looked_into();
+    divisor_ = is_reduced && !has_lines ? divisor_of(preview_) : 1;
+    scale_ = is_reduced && has_lines ? lines_->scale() : 1;
 }
 
-bool Viewer::has_come_to_rest() const { return divisor_ > 1 && Clock::now() - moved_at_ > to_rest; }
+Result<> Viewer::begin_timing(const darkroom::window::PresentFrame& frame) {
+    if (!lines_) return {};
+    if (timers_.context == nullptr) {
+        Result<darkroom::gpu::Timers> made = darkroom::gpu::Timers::create(device_->context(), frames_in_flight, 2);
+        if (!made) return failure(std::move(made));
+        timers_ = std::move(*made);
+    }
+    // A device without timestamps: from one frame to the next.
+    double milliseconds = passed_ * 1000;
+    const double timed = std::exchange(timed_[frame.slot], 0);
+    const bool is_known = timers_.pool == VK_NULL_HANDLE
+                              ? has_developed_ && !has_rested_
+                              : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
+    if (is_known && (timers_.pool == VK_NULL_HANDLE ? scale_ : timed) == lines_->scale())
+        lines_->add(milliseconds / 1000);
+    timers_.begin(frame.commands, frame.slot);
+    timers_.mark(frame.commands, frame.slot, 0);
+    return {};
+}
+
+void Viewer::end_timing(const darkroom::window::PresentFrame& frame) {
+    if (!lines_) return;
+    timers_.mark(frame.commands, frame.slot, 1);
+    if (scene_ != nullptr && !source_->is_kept()) timed_[frame.slot] = scale_;
+}
+
+// One picture alone is none of several, and what is compared with others stands still beside them.
+bool Viewer::gathers() const {
+    const bool is_one = is_fixed() && *job_.frames_to_show == 1;
+    return scene_ != nullptr && is_post_on_ && !is_one && !screen_.is_comparing() && gathers_frames(document_->look());
+}
+
+darkroom::render::FrameJitter Viewer::jitter() const {
+    if (!gathers()) return {};
+    darkroom::render::FrameJitter out{.now = darkroom::Composer::jitter(frame_index_, static_cast<float>(1 / scale_))};
+    out.before = last_jitter_.value_or(out.now);
+    return out;
+}
+
+bool Viewer::has_come_to_rest() const { return (divisor_ > 1 || scale_ < 1) && Clock::now() - moved_at_ > to_rest; }
 
 bool Viewer::is_picture_kept() const {
     return !is_fixed() && !is_time_running() && !is_looked_into() && !is_cut_ && source_->is_kept() &&

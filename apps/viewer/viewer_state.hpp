@@ -22,13 +22,15 @@
 #include "gui.hpp"
 #include "journal.hpp"
 #include "playback.hpp"
-#include "preview_scale.hpp"
+#include "scale_choice.hpp"
 #include "screen.hpp"
 #include "viewer.hpp"
 
 namespace app {
 
 inline constexpr std::uint32_t frames_in_flight = 2;
+/// Seconds. Longer, and a hand no longer feels that it moves what it sees.
+inline constexpr double longest_preview = 1.0 / 15;
 
 class Viewer {
   public:
@@ -47,10 +49,6 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> start_interface();
     [[nodiscard]] darkroom::Result<> turn();
     [[nodiscard]] darkroom::Result<> show(const darkroom::window::PresentFrame& frame);
-    [[nodiscard]] darkroom::Result<> prepare(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
-    [[nodiscard]] darkroom::Result<> record(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
-    [[nodiscard]] std::array<bool, side_count> shown_sides() const;
-    [[nodiscard]] darkroom::Result<> record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame);
     void draw_screen(const darkroom::window::PresentFrame& frame);
     void move_time(double passed);
     [[nodiscard]] LiveMoment moment() const;
@@ -60,6 +58,12 @@ class Viewer {
     [[nodiscard]] bool is_off() const { return !is_post_on_ && (scene_ == nullptr || interface_->is_given()); }
     [[nodiscard]] bool is_fixed() const { return job_.frames_to_show.has_value(); }
     [[nodiscard]] darkroom::Look look_of(Side side) const;
+
+    // viewer_record.cpp
+    [[nodiscard]] darkroom::Result<> prepare(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
+    [[nodiscard]] darkroom::Result<> record(const darkroom::window::PresentFrame& frame);
+    [[nodiscard]] std::array<bool, side_count> shown_sides() const;
+    [[nodiscard]] darkroom::Result<> record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame);
 
     // viewer_device.cpp
     /// The device, what shows pictures with it, and the source.
@@ -144,8 +148,14 @@ class Viewer {
     [[nodiscard]] double frames_a_second();
 
     // viewer_preview.cpp
-    /// Of the frame that comes: how many times fewer pixels each way are enough.
-    [[nodiscard]] std::uint32_t choose_divisor();
+    /// Of the frame that comes: how many of its pixels are made.
+    void choose_scale();
+    /// Takes how long the slot's last frame took, and how long this one does from now on, up to end_timing().
+    [[nodiscard]] darkroom::Result<> begin_timing(const darkroom::window::PresentFrame& frame);
+    void end_timing(const darkroom::window::PresentFrame& frame);
+    /// Is the picture made of several frames of the scene, each drawn from another place within the pixel?
+    [[nodiscard]] bool gathers() const;
+    [[nodiscard]] darkroom::render::FrameJitter jitter() const;
     /// Has nothing changed that the picture is made of, the plan apart?
     [[nodiscard]] bool is_picture_kept() const;
     [[nodiscard]] bool is_looked_into() const;
@@ -201,13 +211,19 @@ class Viewer {
     std::uint32_t frames_due_ = 0;
     std::uint64_t drawn_version_ = 0;  ///< of the document
     bool is_resting_ = false, is_echo_ = false, has_measured_ = false;
-    PreviewScale preview_;
+    ScaleChoice preview_{{1, 0.5, 0.25}, longest_preview};
+    std::optional<ScaleChoice> lines_;       ///< where somebody said how long the device may take for a frame
     std::uint32_t divisor_ = 1, moves_ = 0;  ///< of the last frame; frames that were another, one behind the other
+    double scale_ = 1;                       ///< of the sides of what is drawn to those of the picture
     VkExtent2D full_extent_{};               ///< of the picture, were it not divided
-    Clock::time_point moved_at_{};           ///< the picture was another
-    std::uint64_t developed_version_ = 0;    ///< of the document
-    bool has_rested_ = true, has_developed_ = false;  ///< before the frame that comes; since then a look was recorded
-    double passed_ = 0;                               ///< seconds since the frame before
+    VkExtent2D made_extent_{};               ///< of the picture that is made
+    darkroom::gpu::Timers timers_;           ///< of whole frames
+    std::array<double, frames_in_flight> timed_{};     ///< scales of frames under way; 0: the frame says nothing
+    std::optional<std::array<float, 2>> last_jitter_;  ///< of the scene's frame before
+    Clock::time_point moved_at_{};                     ///< the picture was another
+    std::uint64_t developed_version_ = 0;              ///< of the document
+    bool has_rested_ = true, has_developed_ = false;   ///< before the frame that comes; since then a look was recorded
+    double passed_ = 0;                                ///< seconds since the frame before
     bool is_post_on_ = true, is_paused_ = false, is_leaving_ = false;
     double time_ = 0, previous_time_ = 0, delta_time_ = 0;
     Playback playback_;  ///< of a sequence

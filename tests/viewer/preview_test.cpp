@@ -3,54 +3,118 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <iterator>
+#include <map>
+#include <random>
 #include <vector>
 
-#include "apps/viewer/preview_scale.hpp"
+#include "apps/viewer/scale_choice.hpp"
 #include "apps/viewer/source/reduced_frame.hpp"
 
 namespace app {
 namespace {
 
-/// Frames that take what `seconds` says of their divisor.
-std::uint32_t after(PreviewScale& scale, int frames, const std::function<double(std::uint32_t)>& seconds) {
-    for (int i = 0; i < frames; ++i) scale.add(seconds(scale.divisor()));
-    return scale.divisor();
+const std::vector<double> halves{1, 0.5, 0.25};
+const std::vector<double> small_steps{1, 0.85, 0.7, 0.6, 0.5, 0.4, 1.0 / 3};
+constexpr double most = 1.0 / 15;
+
+using Cost = std::function<double(double scale)>;
+
+/// Pictures that take what `cost` says of their scale.
+double after(ScaleChoice& choice, int pictures, const Cost& cost) {
+    for (int i = 0; i < pictures; ++i) choice.add(cost(choice.scale()));
+    return choice.scale();
 }
-auto of_pixels(double whole) {
-    return [whole](std::uint32_t divisor) { return whole / (divisor * divisor); };
+/// How often it is another scale.
+int changes(ScaleChoice& choice, int pictures, const Cost& cost) {
+    int out = 0;
+    for (int i = 0; i < pictures; ++i) {
+        const double before = choice.scale();
+        out += after(choice, 1, cost) != before ? 1 : 0;
+    }
+    return out;
+}
+Cost of_pixels(double whole, double fixed = 0) {
+    return [=](double scale) { return fixed + whole * scale * scale; };
 }
 
-TEST(PreviewScale, IsAsFineAsTimeAllows) {
-    PreviewScale fast, slow, slowest;
-    EXPECT_EQ(after(fast, 100, of_pixels(0.05)), 1U);
-    EXPECT_EQ(after(slow, 100, of_pixels(0.2)), 2U);
-    EXPECT_EQ(after(slowest, 100, of_pixels(0.5)), 4U);
-    EXPECT_EQ(after(slowest, 100, of_pixels(0.1)), 2U);
-    EXPECT_EQ(after(slowest, 100, of_pixels(0.02)), 1U);
+TEST(ScaleChoice, IsAsFineAsTimeAllows) {
+    ScaleChoice fast(halves, most), slow(halves, most), slowest(halves, most);
+    EXPECT_EQ(after(fast, 100, of_pixels(0.05)), 1);
+    EXPECT_EQ(after(slow, 100, of_pixels(0.2)), 0.5);
+    EXPECT_EQ(after(slowest, 100, of_pixels(0.5)), 0.25);
+    EXPECT_EQ(after(slowest, 100, of_pixels(0.1)), 0.5);
+    EXPECT_EQ(after(slowest, 100, of_pixels(0.02)), 1);
 }
 
-TEST(PreviewScale, OneFrameThatTakesLongChangesNothing) {
-    PreviewScale scale;
-    for (int i = 0; i < 100; ++i) scale.add(i % 5 == 0 ? 1.0 : 0.02);
-    EXPECT_EQ(scale.divisor(), 1U);
+TEST(ScaleChoice, OnePictureThatTakesLongChangesNothing) {
+    ScaleChoice choice(halves, most);
+    for (int i = 0; i < 100; ++i) choice.add(i % 5 == 0 ? 1.0 : 0.02);
+    EXPECT_EQ(choice.scale(), 1);
 }
 
-TEST(PreviewScale, DoesNotAlternate) {
+TEST(ScaleChoice, DoesNotAlternate) {
     for (const double whole : {0.05, 0.07, 0.1, 0.2, 0.26, 0.3, 0.5}) {
-        PreviewScale scale;
-        (void)after(scale, 50, of_pixels(whole));
-        const std::uint32_t settled = scale.divisor();
-        for (int i = 0; i < 100; ++i) EXPECT_EQ(after(scale, 1, of_pixels(whole)), settled) << whole;
+        ScaleChoice choice(halves, most);
+        (void)after(choice, 50, of_pixels(whole));
+        EXPECT_EQ(changes(choice, 100, of_pixels(whole)), 0) << whole;
     }
 }
 
-TEST(PreviewScale, KeepsThePixelsWhereFewerGainNothing) {
-    PreviewScale scale;
+TEST(ScaleChoice, KeepsThePixelsWhereFewerGainNothing) {
+    ScaleChoice choice(halves, most);
     int coarse = 0;
-    for (int i = 0; i < 200; ++i) coarse += after(scale, 1, [](std::uint32_t) { return 0.3; }) > 1 ? 1 : 0;
-    EXPECT_EQ(scale.divisor(), 1U);
+    for (int i = 0; i < 200; ++i) coarse += after(choice, 1, [](double) { return 0.3; }) < 1 ? 1 : 0;
+    EXPECT_EQ(choice.scale(), 1);
     EXPECT_LT(coarse, 10);
+    EXPECT_LE(changes(choice, 100'000, [](double) { return 0.3; }), 20) << "and tries it ever more seldom";
+}
+
+// Whatever a picture costs at each scale, as long as fewer pixels cost less.
+TEST(ScaleChoice, ComesToRestAtAScaleThatFits) {
+    std::mt19937 random(3);
+    for (int run = 0; run < 2000; ++run) {
+        std::map<double, double> costs;
+        double cost = most * std::exp(std::uniform_real_distribution(-2.0, 3.0)(random));
+        for (const double scale : small_steps) {
+            costs[scale] = cost;
+            cost /= std::uniform_real_distribution(1.1, 2.5)(random);
+        }
+        const auto of = [&](double scale) { return costs.at(scale); };
+        ScaleChoice choice(small_steps, most);
+        const double settled = after(choice, 300, of);
+        EXPECT_EQ(changes(choice, 2000, of), 0) << run;
+        EXPECT_TRUE(of(settled) <= most || settled == small_steps.back()) << run;
+    }
+}
+
+TEST(ScaleChoice, IsTheFinestWhereTimeFollowsPixels) {
+    std::mt19937 random(4);
+    for (int run = 0; run < 2000; ++run) {
+        const Cost of = of_pixels(most * std::exp(std::uniform_real_distribution(-2.0, 4.0)(random)));
+        ScaleChoice choice(small_steps, most);
+        const double settled = after(choice, 300, of);
+        const auto finer = std::ranges::find(small_steps, settled);
+        if (finer == small_steps.begin()) continue;
+        EXPECT_GT(of(*std::prev(finer)), 0.8 * most) << run;
+    }
+}
+
+TEST(ScaleChoice, FollowsALoadAndNoNoise) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution noise(0.95, 1.05);
+    ScaleChoice choice(small_steps, most);
+    const auto under = [&](double load) {
+        return [&, load](double scale) { return noise(random) * load * (0.01 + 0.04 * scale * scale); };
+    };
+    EXPECT_EQ(after(choice, 100, under(1)), 1);
+    const double loaded = after(choice, 100, under(2));
+    EXPECT_LT(loaded, 0.8);
+    EXPECT_GT(loaded, 0.6);
+    EXPECT_LE(changes(choice, 2000, under(2)), 4);
+    EXPECT_EQ(after(choice, 200, under(1)), 1);
 }
 
 TEST(ReducedFrame, HasThePixelsInTheMiddleAndShorterMotion) {

@@ -3,6 +3,7 @@
 // that have fewer pixels while they move.
 #include <fmt/format.h>
 
+#include "image/frame/frame_file.hpp"
 #include "tests/places.hpp"
 #include "viewer_support.hpp"
 
@@ -103,6 +104,42 @@ TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
     start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
     std::this_thread::sleep_for(std::chrono::seconds(5));
     EXPECT_EQ(divisor(), "1280x720 / 1");
+    leave();
+}
+
+TEST_F(CliViewerSpeed, AFrameTimeDrawsASceneWithFewerLinesOfThePicture) {
+    const std::string scene = scenes_folder + "showcase.scene.toml";
+    const std::string look = write("gathers.toml",
+                                   "[[stack]]\neffect = \"taa\"\n\n[[stack]]\neffect = \"tonemap\"\n"
+                                   "\n[[stack]]\neffect = \"encode\"\n");
+    const auto begin = [&](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"play", scene, "--look", look, "--size", "640x360"});
+        start(flags);
+    };
+    begin({"--frame-time", "0.5"});
+    EXPECT_TRUE(wait_until([&] { return divisor() == "640x360 / 1 from 213x120"; }, 60)) << divisor();
+    // What is stored has all lines, from the frame's own place within the pixel.
+    EXPECT_EQ(shot().width, 640U);
+    press("ctrl+c", "stored frame-0001.exr");
+    const Result<FrameFile> frame = read_frame(path("frame-0001.exr"));
+    ASSERT_TRUE(frame) << frame.error().text;
+    EXPECT_EQ(frame->color.height, 360U);
+    ASSERT_TRUE(frame->camera.jitter);
+    EXPECT_NE(*frame->camera.jitter, frame->camera.previous_jitter);
+    press("p", "P pause: on");
+    EXPECT_TRUE(wait_until([&] { return divisor() == "640x360 / 1 from 640x360"; }, 60)) << divisor();
+    leave();
+    begin({"--frame-time", "1000"});
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    EXPECT_EQ(divisor(), "640x360 / 1 from 640x360");
+    leave();
+
+    write("gathers.toml", "[[stack]]\neffect = \"tonemap\"\n\n[[stack]]\neffect = \"encode\"\n");
+    begin({"--paused", "--frame-time", "0.5"});
+    const Picture from_all_lines = shot();
+    leave();
+    begin({"--paused"});
+    EXPECT_LE(difference(from_all_lines, shot()), 1.001 / 255);
     leave();
 }
 

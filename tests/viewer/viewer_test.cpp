@@ -285,6 +285,12 @@ TEST_F(CliViewer, RefusesWhatItCannotShow) {
                    "vsync, mailbox or immediate");
     expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--range", "wide"}, 1, "standard or high");
     expect_refused({"play", scenes_folder + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
+    const std::string scene = scenes_folder + "dungeon.scene.toml";
+    expect_refused({"play", scene, "--frame-time", "0"}, 1, "--frame-time = 0: allowed is [0.1, 1000] ms");
+    expect_refused({"play", scene, "--frame-time", "16", "--full-size"}, 1, "--full-size draws every pixel");
+    expect_refused({"play", scene, "--frame-time", "16", "--frames", "2"}, 1, "frames that are counted");
+    expect_refused({"edit", write("frame.exr", ""), "--frame-time", "16"}, 1,
+                   "--frame-time: stored frames have the lines they have");
     expect_refused({"edit", path("missing.exr")}, 1, "missing.exr");
     expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--screenshot", path("none/a.png")}, 1, "none");
 }

@@ -48,6 +48,10 @@ void ViewFlags::add_to(CommandFlags command, bool edits, std::span<const darkroo
             "--full-size", is_full_size,
             "Draws every pixel also while something moves; else a half or a quarter each way where frames take long")
         .group(group);
+    frame_time
+        .add_to(command, "Draws a scene with fewer lines, down to a third, where the device takes longer for a frame")
+        .type_name("MS")
+        .group(group);
     command.add_option("--screenshot", screenshot, "Stores the last frame's picture, and ends (--frames 1)")
         .type_name("OUT")
         .group(group);

@@ -31,6 +31,7 @@ struct ViewFlags {
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames{"--frames", {.least = 1, .most = 1e9, .is_whole = true}};
     NumberFlag peak{"--peak-nits", {.least = 100, .most = 10000, .unit = "cd/m2"}};
+    NumberFlag frame_time{"--frame-time", {.least = 0.1, .most = 1000, .unit = "ms"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
 };
 

@@ -141,6 +141,18 @@ Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path
     return {};
 }
 
+Result<> read_frame_time(ViewerJob& job, const ViewFlags& flags) {
+    std::optional<double> milliseconds;
+    if (Result<> done = flags.frame_time.read_to(milliseconds); !done || !milliseconds) return done;
+    if (job.scene.empty())
+        return user_error("--frame-time: stored frames have the lines they have; a scene or a model is needed");
+    if (flags.is_full_size) return user_error("--frame-time: --full-size draws every pixel, however long that takes");
+    if (flags.frames.is_given() || !flags.screenshot.empty() || !flags.window_screenshot.empty())
+        return user_error("--frame-time: frames that are counted are the same on every machine, and have every pixel");
+    job.frame_time = *milliseconds / 1000;
+    return {};
+}
+
 Result<> read_window(ViewerJob& job, const ViewFlags& flags) {
     constexpr std::array modes{std::pair("vsync", Presentation::Vsync), std::pair("mailbox", Presentation::Mailbox),
                                std::pair("immediate", Presentation::Immediate)};
@@ -165,6 +177,7 @@ Result<> read_window(ViewerJob& job, const ViewFlags& flags) {
     job.turns = flags.turns;
     job.is_paused = flags.is_paused;
     job.is_full_size = flags.is_full_size;
+    if (Result<> done = read_frame_time(job, flags); !done) return done;
     job.obeys_input = flags.obeys_input;
     const std::string subject = (job.scene.empty() ? job.frames.front().path : job.scene).filename().string();
     job.window = {.title = fmt::format("{} - Darkroom", printable(subject)),

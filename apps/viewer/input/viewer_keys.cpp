@@ -247,7 +247,9 @@ void Viewer::run_command(const std::string& command) {
     // For who measures: what was drawn so far.
     if (command == "frames") {
         const auto [width, height] = full_extent_;
-        return print(fmt::format("frames: {}, {}x{} / {}", shown_frames_, width, height, divisor_));
+        const VkExtent2D drawn = source_->frame().color.extent;
+        return print(fmt::format("frames: {}, {}x{} / {}{}", shown_frames_, width, height, divisor_,
+                                 lines_ ? fmt::format(" from {}x{}", drawn.width, drawn.height) : ""));
     }
     if (command == "messages") {
         const darkroom::panels::Messages& messages = screen_.messages();

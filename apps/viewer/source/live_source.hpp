@@ -23,7 +23,9 @@ struct LiveMoment {
     darkroom::scene::OrbitOverride orbit;
     std::optional<darkroom::scene::OrbitOverride> previous_orbit;  ///< of the frame before
     darkroom::render::DrawOptions draw;
-    bool is_post_off = false;   ///< a picture by the scene's own shaders is wanted
+    darkroom::render::FrameJitter jitter;  ///< of a scene
+    float aspect = 1;                      ///< of its picture
+    bool is_post_off = false;              ///< a picture by the scene's own shaders is wanted
     std::uint32_t divisor = 1;  ///< frames that have a size are wanted with so many times fewer pixels each way
 };
 

@@ -80,12 +80,13 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui,
 
 Result<> LookView::compile(const CompileDesc& desc) {
     compiled_ = desc;
+    if (desc_.enlarges) compiled_.target_extent = desc.max_extent;
     if (is_compiled_) {
         const VkExtent2D asked = desc.max_extent;
         least_pending_ = composer_.pending().is_pending ? least_of(least_pending_, asked) : asked;
-        return composer_.compile_later(desc);
+        return composer_.compile_later(compiled_);
     }
-    const Result<darkroom::Plan> plan = composer_.compile(desc);
+    const Result<darkroom::Plan> plan = composer_.compile(compiled_);
     if (!plan) return failure(plan.error());
     is_compiled_ = true;
     return {};
@@ -185,14 +186,18 @@ darkroom::ImageRef LookView::watched() const {
 
 void LookView::copy(VkCommandBuffer commands, const darkroom::ImageRef& from) {
     change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    const VkExtent2D both = least_of(from.extent, extent());
-    const VkOffset3D end{static_cast<std::int32_t>(both.width), static_cast<std::int32_t>(both.height), 1};
+    const auto end_of = [](VkExtent2D of) {
+        return VkOffset3D{static_cast<std::int32_t>(of.width), static_cast<std::int32_t>(of.height), 1};
+    };
     const VkImageSubresourceLayers layer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     // The formats differ where pictures are light.
-    const VkImageBlit whole{
-        .srcSubresource = layer, .srcOffsets = {{}, end}, .dstSubresource = layer, .dstOffsets = {{}, end}};
+    const VkImageBlit whole{.srcSubresource = layer,
+                            .srcOffsets = {{}, end_of(from.extent)},
+                            .dstSubresource = layer,
+                            .dstOffsets = {{}, end_of(extent())}};
     device_.context().vk.CmdBlitImage(commands, from.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture_.handle,
-                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole, VK_FILTER_NEAREST);
+                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole,
+                                      is_equal(from.extent, extent()) ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     is_drawn_ = true;
     is_of_look_ = false;

@@ -20,6 +20,7 @@ class LookView {
         darkroom::KernelStage kernels = darkroom::KernelStage::Auto;
         bool fuse = true;
         bool makes_light = false;        ///< in place of code values of sRGB, for a window of high range
+        bool enlarges = false;           ///< frames may be smaller than the pictures of them
         std::vector<std::string> keeps;  ///< as in darkroom::ApplyOptions
     };
     LookView(darkroom::Device& device, Desc desc);
@@ -39,7 +40,7 @@ class LookView {
     [[nodiscard]] bool must_wait(VkExtent2D extent) const;
     /// Makes the picture, and leaves it to be sampled by fragment shaders.
     [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands, darkroom::Frame frame);
-    /// Copies somebody else's picture of the same extent there, code values, which is in TRANSFER_SRC_OPTIMAL.
+    /// Copies somebody else's picture there, code values, which is in TRANSFER_SRC_OPTIMAL, and enlarges it.
     void copy(VkCommandBuffer commands, const darkroom::ImageRef& picture);
     /// Would record() make the same picture again of the same frame? Never of a look that remembers frames.
     [[nodiscard]] bool is_current() const;

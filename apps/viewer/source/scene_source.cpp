@@ -97,14 +97,18 @@ bool SceneSource::is_another(const LiveMoment& moment) const {
 }
 
 Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
-    is_kept_ = !is_another(moment) && drawn_->second.width == extent.width && drawn_->second.height == extent.height;
+    const auto is_there = [&](const LiveMoment& before, VkExtent2D drawn) {
+        return drawn.width == extent.width && drawn.height == extent.height && before.jitter.now == moment.jitter.now &&
+               before.jitter.before == moment.jitter.before;
+    };
+    is_kept_ = !is_another(moment) && is_there(drawn_->first, drawn_->second);
     if (is_kept_) return {};
     drawn_.reset();
     is_display_ = moment.is_post_off || moment.draw.debug != render::DebugView::None;
     snapshot_ = scene::snapshot(scene_, assets_,
                                 {.time = moment.time,
                                  .previous_time = moment.previous_time,
-                                 .aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height),
+                                 .aspect = moment.aspect,
                                  .seed = desc_.seed,
                                  .orbit = moment.orbit,
                                  .previous_orbit = moment.previous_orbit});
@@ -134,8 +138,10 @@ Result<> SceneSource::use(bool is_display, const LiveMoment& moment, VkExtent2D 
         if (Result<> done = used.resize(extent); !done) return done;
     render::DrawOptions draw = moment.draw;
     draw.has_grid = draw.has_grid && scene_.has_grid;
+    if (is_display) draw.mip_bias = 0;
     if (Result<> done = used.set(draw); !done) return done;
-    return used.prepare(snapshot_);
+    // Its own shaders gather nothing.
+    return used.prepare(snapshot_, is_display ? render::FrameJitter{} : moment.jitter);
 }
 
 Result<> SceneSource::record(VkCommandBuffer commands) {
