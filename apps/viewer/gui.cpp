@@ -11,6 +11,13 @@ namespace app {
 
 using darkroom::Result;
 
+namespace {
+
+/// As many images as swapchains have, and more than frames under way.
+constexpr std::size_t most_changed = 6;
+
+}  // namespace
+
 Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkroom::window::Window& window,
                                          const darkroom::window::GuiPass::Desc& desc) {
     std::unique_ptr<Gui> out(new Gui(context, window));
@@ -52,6 +59,7 @@ Result<> Gui::begin(float scale) {
         scale_ = scale;
         darkroom::panels::apply_theme(scale);
         if (Result<> done = pass_->upload_fonts(*ImGui::GetIO().Fonts); !done) return done;
+        damage_ = {};
     }
     ImGui_ImplGlfw_NewFrame();
     hold_short_presses();
@@ -59,30 +67,51 @@ Result<> Gui::begin(float scale) {
     return {};
 }
 
+std::vector<VkRect2D> Gui::parts_of(const darkroom::window::PresentFrame& frame, const ImDrawData& lists) {
+    changed_.push_back({frame.number, damage_.take(lists, ImGui::GetIO().Fonts->TexID)});
+    if (changed_.size() > most_changed) changed_.pop_front();
+    // One that was begun and not drawn leaves a gap.
+    if (frame.age == 0 || frame.age > changed_.size() ||
+        changed_[changed_.size() - frame.age].frame != frame.number + 1 - frame.age)
+        return {{{0, 0}, frame.extent}};
+    std::vector<VkRect2D> out;
+    for (std::size_t i = changed_.size() - frame.age; i < changed_.size(); ++i)
+        for (const VkRect2D& part : changed_[i].parts) darkroom::window::add_part(out, part);
+    return out;
+}
+
 Result<> Gui::draw(const darkroom::window::PresentFrame& frame) {
     has_popup_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     ImGui::Render();
-    const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                               .imageView = frame.view,
-                                               .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                               .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                               .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-                                               .clearValue = {.color = {.float32 = {0.0F, 0.0F, 0.0F, 1.0F}}}};
-    const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                    .renderArea = {{0, 0}, frame.extent},
-                                    .layerCount = 1,
-                                    .colorAttachmentCount = 1,
-                                    .pColorAttachments = &attachment};
-    context_.vk.CmdBeginRendering(frame.commands, &rendering);
-    Result<> done;
-    // The window may have changed between its events and the swapchain.
     ImDrawData* const lists = ImGui::GetDrawData();
     const auto width = static_cast<std::uint32_t>(lists->DisplaySize.x * lists->FramebufferScale.x);
     const auto height = static_cast<std::uint32_t>(lists->DisplaySize.y * lists->FramebufferScale.y);
-    if (width == frame.extent.width && height == frame.extent.height)
-        done = pass_->record(frame.commands, *lists, frame.slot);
-    context_.vk.CmdEndRendering(frame.commands);
-    return done;
+    // The window may have changed between its events and the swapchain.
+    const bool fits = width == frame.extent.width && height == frame.extent.height;
+    std::vector<VkRect2D> parts{{{0, 0}, frame.extent}};
+    if (fits)
+        parts = parts_of(frame, *lists);
+    else
+        damage_ = {};
+    if (Result<> done = pass_->begin(*lists, frame.slot); !done) return done;
+    for (const VkRect2D& part : parts) {
+        const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                                   .imageView = frame.view,
+                                                   .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                   .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                                   .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                                   .clearValue = {.color = {.float32 = {0.0F, 0.0F, 0.0F, 1.0F}}}};
+        const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                        .renderArea = part,
+                                        .layerCount = 1,
+                                        .colorAttachmentCount = 1,
+                                        .pColorAttachments = &attachment};
+        context_.vk.CmdBeginRendering(frame.commands, &rendering);
+        const Result<> done = fits ? pass_->record_part(frame.commands, *lists, frame.slot, part) : Result<>();
+        context_.vk.CmdEndRendering(frame.commands);
+        if (!done) return done;
+    }
+    return {};
 }
 
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }

@@ -103,6 +103,10 @@ std::vector<std::uint32_t> target_constants(const GuiPass::Desc& desc) {
     return {kind(), std::bit_cast<std::uint32_t>(desc.color.peak_nits)};
 }
 
+bool is_empty(const ImDrawData& data) {
+    return data.TotalVtxCount == 0 || data.DisplaySize.x <= 0 || data.DisplaySize.y <= 0;
+}
+
 /// Does a pane show the codes of one view as they are?
 bool is_plain(const Pane& pane) {
     return &second_view(pane) == &pane.view && pane.view.transfer == PaneTransfer::Encoded && pane.exposure == 0 &&
@@ -151,16 +155,18 @@ VkDescriptorImageInfo sampled(const gpu::Context& context, const ImageRef& image
     return {is_linear ? context.linear_sampler : context.nearest_sampler, image.view, image.layout};
 }
 
-/// The part of a command's clip rectangle that is on the target; nothing where it is empty.
-VkRect2D scissor_of(const ImDrawCmd& command, const ImDrawData& data) {
+/// The part of a command's clip rectangle that is on the target and in the part; nothing where it is empty.
+VkRect2D scissor_of(const ImDrawCmd& command, const ImDrawData& data, const VkRect2D& part) {
     const auto pixel = [](float place, float origin, float scale, float size) {
         return static_cast<std::int32_t>(std::clamp((place - origin) * scale, 0.0F, size * scale));
     };
     const ImVec2 origin = data.DisplayPos, scale = data.FramebufferScale, size = data.DisplaySize;
-    const VkOffset2D first{pixel(command.ClipRect.x, origin.x, scale.x, size.x),
-                           pixel(command.ClipRect.y, origin.y, scale.y, size.y)};
-    const VkOffset2D end{pixel(command.ClipRect.z, origin.x, scale.x, size.x),
-                         pixel(command.ClipRect.w, origin.y, scale.y, size.y)};
+    const auto end_of = [](std::int32_t at, std::uint32_t extent) { return at + static_cast<std::int32_t>(extent); };
+    const VkOffset2D first{std::max(pixel(command.ClipRect.x, origin.x, scale.x, size.x), part.offset.x),
+                           std::max(pixel(command.ClipRect.y, origin.y, scale.y, size.y), part.offset.y)};
+    const VkOffset2D end{
+        std::min(pixel(command.ClipRect.z, origin.x, scale.x, size.x), end_of(part.offset.x, part.extent.width)),
+        std::min(pixel(command.ClipRect.w, origin.y, scale.y, size.y), end_of(part.offset.y, part.extent.height))};
     return {first,
             {static_cast<std::uint32_t>(std::max(end.x - first.x, 0)),
              static_cast<std::uint32_t>(std::max(end.y - first.y, 0))}};
@@ -181,7 +187,7 @@ struct GuiPass::State {
     Result<VkDescriptorSet> pane_set(const Pane& pane, DrawSlot& slot) const;
     void bind(VkCommandBuffer commands, const ImDrawData& data, const DrawSlot& slot) const;
     Result<> draw(VkCommandBuffer commands, const ImDrawData& data, const ImDrawCmd& command, Block& block,
-                  DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index) const;
+                  DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index, const VkRect2D& part) const;
 };
 
 Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontAtlas& atlas) {
@@ -298,8 +304,9 @@ void GuiPass::State::bind(VkCommandBuffer commands, const ImDrawData& data, cons
 }
 
 Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, const ImDrawCmd& command, Block& block,
-                              DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index) const {
-    const VkRect2D scissor = scissor_of(command, data);
+                              DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index,
+                              const VkRect2D& part) const {
+    const VkRect2D scissor = scissor_of(command, data, part);
     if (scissor.extent.width == 0 || scissor.extent.height == 0) return {};
     void* const texture = command.GetTexID();
     const bool is_font = texture == nullptr || texture == font_texture;
@@ -325,11 +332,23 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
 }
 
 Result<> GuiPass::record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot) {
+    if (Result<> begun = begin(data, slot); !begun) return begun;
+    const VkExtent2D whole{static_cast<std::uint32_t>(std::max(data.DisplaySize.x * data.FramebufferScale.x, 0.0F)),
+                           static_cast<std::uint32_t>(std::max(data.DisplaySize.y * data.FramebufferScale.y, 0.0F))};
+    return record_part(commands, data, slot, {{0, 0}, whole});
+}
+
+Result<> GuiPass::begin(const ImDrawData& data, std::uint32_t slot) {
     DARKROOM_ASSERT(slot < state_->slots.size());
     DrawSlot& own = state_->slots[slot];
     own.panes.clear();
-    if (data.TotalVtxCount == 0 || data.DisplaySize.x <= 0 || data.DisplaySize.y <= 0) return {};
-    if (Result<> written = state_->write_vertices(data, own); !written) return written;
+    return is_empty(data) ? Result<>() : state_->write_vertices(data, own);
+}
+
+Result<> GuiPass::record_part(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot,
+                              const VkRect2D& part) {
+    DrawSlot& own = state_->slots[slot];
+    if (is_empty(data)) return {};
     Block block;
     block.scale = {2 / data.DisplaySize.x, 2 / data.DisplaySize.y};
     block.offset = {-1 - data.DisplayPos.x * block.scale[0], -1 - data.DisplayPos.y * block.scale[1]};
@@ -340,7 +359,7 @@ Result<> GuiPass::record(VkCommandBuffer commands, const ImDrawData& data, std::
         const ImDrawList& list = *data.CmdLists[i];
         for (const ImDrawCmd& command : list.CmdBuffer) {
             if (command.UserCallback == nullptr) {
-                if (Result<> drawn = state_->draw(commands, data, command, block, own, first_vertex, first_index);
+                if (Result<> drawn = state_->draw(commands, data, command, block, own, first_vertex, first_index, part);
                     !drawn)
                     return drawn;
                 continue;

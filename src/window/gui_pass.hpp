@@ -41,6 +41,9 @@ class GuiPass {
     /// DisplaySize * FramebufferScale. Slot: no recording with it is unfinished. A texture is a Pane, or null or the
     /// atlas's for the fonts. Errors: more panes than most_panes, VkResult.
     Result<> record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot);
+    /// The same in parts, each in a rendering instance of its own: begin() once, then what lies within each part.
+    Result<> begin(const ImDrawData& data, std::uint32_t slot);
+    Result<> record_part(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot, const VkRect2D& part);
 
   private:
     struct State;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "gpu/device/cleared.hpp"
@@ -100,6 +101,7 @@ struct Swapchain {
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkSemaphore is_drawn = VK_NULL_HANDLE;
+        std::optional<std::uint64_t> shown;  ///< number of its last frame
     };
     std::vector<Image> images;
 };
@@ -388,18 +390,20 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
              .commands = slot.commands,
              .image = swapchain.images[image].image,
              .view = swapchain.images[image].view,
-             .extent = swapchain.extent};
+             .extent = swapchain.extent,
+             .age = swapchain.images[image].shown ? next - *swapchain.images[image].shown : 0};
     result = context->vk.ResetCommandPool(context->device, slot.pool, 0);
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     if (result == VK_SUCCESS) result = context->vk.BeginCommandBuffer(slot.commands, &info);
     if (Result<> done = check(result, "beginning a frame"); !done) return failure(std::move(done));
-    change_layout(VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    change_layout(frame.age > 0 ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_UNDEFINED,
+                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     return frame;
 }
 
 void Presenter::State::change_layout(VkImageLayout from, VkImageLayout to) const {
-    const bool is_new = from == VK_IMAGE_LAYOUT_UNDEFINED;
+    const bool is_new = to == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     const VkImageMemoryBarrier2 change{
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
         .srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -419,7 +423,7 @@ void Presenter::State::change_layout(VkImageLayout from, VkImageLayout to) const
 }
 
 Result<> Presenter::State::end() {
-    const Swapchain::Image& target = swapchain.images[image];
+    Swapchain::Image& target = swapchain.images[image];
     change_layout(VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
     VkResult result = context->vk.EndCommandBuffer(frame.commands);
     if (Result<> done = check(result, "recording a frame"); !done) return done;
@@ -452,7 +456,7 @@ Result<> Presenter::State::end() {
     const std::lock_guard lock(context->queue_mutex);
     result = context->vk.QueueSubmit2(context->queue, 1, &submit, VK_NULL_HANDLE);
     if (Result<> done = check(result, "submitting a frame"); !done) return done;
-    ++next;
+    target.shown = next++;
     result = vk.QueuePresentKHR(context->queue, &present);
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
         is_stale = true;

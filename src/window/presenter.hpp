@@ -35,10 +35,12 @@ struct PresentFrame {
     std::uint64_t number = 0;  ///< counts from 0
     std::uint32_t slot = 0;    ///< number modulo frames_in_flight: whatever the slot's last frame used is free
     VkCommandBuffer commands = VK_NULL_HANDLE;
-    /// To be drawn on, of unknown content. It is in COLOR_ATTACHMENT_OPTIMAL, and back in it when end() is called.
+    /// To be drawn on. It is in COLOR_ATTACHMENT_OPTIMAL, and back in it when end() is called.
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkExtent2D extent{};
+    /// So many frames ago the image was shown, and has what that frame drew; 0: its content is unknown.
+    std::uint64_t age = 0;
 };
 
 struct PresenterCounters {
