@@ -25,7 +25,132 @@ class CliViewerTasks : public ViewerFixture {
         const auto [left, top, right, bottom] = place(name);
         return {(left + right) / 2, (top + bottom) / 2};
     }
+    /// Until what was just opened is there to be typed into.
+    static void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(700)); }
 };
+
+TEST_F(CliViewerTasks, OpensASceneAndWalks) {
+    start({"edit", frame("frame.exr"), "--size", "1280x720", "--paused"});
+    click("view/open");
+    settle();
+    type("scenes");
+    press("Return");
+    settle();
+    type("dungeon.scene");
+    press("Return", "opened dungeon.scene.toml");
+    const Picture opened = shot();
+    EXPECT_GT(opened.width, 160U) << "as large as its place";
+    const auto [x, y] = middle("panel/Picture");
+    drag({x, y}, {x + 120, y});
+    const Picture turned = shot();
+    EXPECT_GT(difference(opened, turned), 0.1) << "a drag orbits";
+    press("v", "V: the camera flies");
+    ASSERT_EQ(shell("xdotool keydown w sleep 1 keyup w"), 0);
+    EXPECT_GT(difference(turned, shot()), 0.1) << "W flies";
+    press("space", "Space: the scene's camera");
+    EXPECT_EQ(difference(opened, shot()), 0);
+    leave();
+
+    start({"play", scenes_folder + "dungeon.scene.toml", "--size", "640x360", "--paused"});
+    const Picture first = shot();
+    ASSERT_EQ(shell(fmt::format("xdotool mousemove --window {} 320 180", window())), 0);
+    ASSERT_EQ(shell("xdotool mousemove_relative 60 0"), 0);
+    EXPECT_EQ(difference(first, shot()), 0) << "nobody has taken the mouse";
+    ASSERT_EQ(shell("xdotool mousedown 1 sleep 0.5 mouseup 1"), 0);
+    settle();
+    ASSERT_EQ(shell("xdotool mousemove_relative 200 0"), 0);
+    EXPECT_TRUE(wait_until([&] { return difference(first, shot()) > 0.1; }, 30)) << "it looks round";
+    const Picture looked = shot();
+    ASSERT_EQ(shell("xdotool keydown w sleep 1 keyup w"), 0);
+    EXPECT_GT(difference(looked, shot()), 0.1) << "W walks";
+    press("Escape");
+    leave();
+}
+
+TEST_F(CliViewerTasks, AddsAnEffectSetsItAndSaves) {
+    const std::string text = "[post_process]\nbloom_intensity = 0.2\n";
+    const std::string look = write("my.toml", text);
+    start({"edit", frame("frame.exr"), "--look", look, "--size", "1280x720"});
+    const Picture before = shot();
+    click("stack/add");
+    settle();
+    type("posterize");
+    settle();
+    click("add/posterize");
+    settle();
+    const Picture added = shot();
+    EXPECT_GT(difference(before, added), 0) << "it is on, and its panel is open";
+    const auto [left, top, right, bottom] = place("posterize.levels");
+    drag({(left + right) / 2, (top + bottom) / 2}, {left + 8, (top + bottom) / 2});
+    EXPECT_GT(difference(added, shot()), 0);
+    press("ctrl+s", "saved my.toml");
+    const std::string saved = content(look);
+    EXPECT_TRUE(saved.starts_with(text)) << saved;
+    EXPECT_NE(saved.find("posterize_enabled = true"), std::string::npos) << saved;
+    EXPECT_NE(saved.find("posterize_levels = "), std::string::npos) << saved;
+    leave();
+}
+
+TEST_F(CliViewerTasks, MendsABrokenEffectFromItsMessage) {
+    const std::string good =
+        "// @effect tint: Tints.\n// @param float amount = 0.5 in [0, 1]: How much.\n\n"
+        "vec4 tint(vec4 color, Pixel pixel, Tint parameters) {\n    return color * parameters.amount;\n}\n";
+    write("tint.glsl", good);
+    const std::string look =
+        write("my.toml",
+              "[[stack]]\neffect = \"tint.glsl\"\n[[stack]]\neffect = \"tonemap\"\n[[stack]]\neffect = \"encode\"\n");
+    const std::string editor = write("editor.sh", "#!/bin/sh\n[ \"$1\" = +5 ] && sed -i s/amonut/amount/ \"$2\"\n");
+    std::filesystem::permissions(editor, std::filesystem::perms::owner_all);
+    setenv("VISUAL", editor.c_str(), 1);
+    start({"edit", frame("frame.exr"), "--look", look, "--size", "1280x720"});
+    const Picture before = shot();
+    std::string broken = good;
+    broken.replace(broken.find(".amount"), 7, ".amonut");
+    write("tint.glsl", broken);
+    EXPECT_TRUE(wait_until([&] { return complained().find("tint.glsl:5") != std::string::npos; }, 60)) << said();
+    EXPECT_EQ(difference(before, shot()), 0) << "the last good picture stays";
+    click("message/0");
+    EXPECT_TRUE(wait_until([&] { return count("read tint.glsl again") == 2; }, 60)) << said() << complained();
+    EXPECT_TRUE(wait_until([&] { return ask("messages", "messages: ") == "0"; }, 60)) << said();
+    EXPECT_EQ(difference(before, shot()), 0);
+    unsetenv("VISUAL");
+}
+
+TEST_F(CliViewerTasks, ALookComesByItsWeightAndByDistance) {
+    const auto exposed = [](const std::string& exposure) {
+        return "[[stack]]\neffect = \"exposure\"\nexposure = " + exposure +
+               "\n\n[[stack]]\neffect = \"tonemap\"\n\n[[stack]]\neffect = \"encode\"\n";
+    };
+    const std::string look = write("my.toml", exposed("1.0"));
+    write("night.toml", exposed("0.1"));
+    start({"edit", scenes_folder + "dungeon.scene.toml", "--look", look, "--size", "1600x900", "--paused"});
+    const Picture before = shot();
+    click("stack/add_layer");
+    settle();
+    type("night");
+    settle();
+    click("mover/file");
+    settle();
+    type("night.toml");
+    press("Return");
+    settle();
+    const auto [left, top, right, bottom] = place("layer/night.weight");
+    drag({left + 8, (top + bottom) / 2}, {right - 8, (top + bottom) / 2});
+    const Picture night = shot();
+    EXPECT_GT(difference(before, night), 0.1) << "it gets dark";
+    click("layer/distance");
+    settle();
+    EXPECT_LT(difference(before, shot()), difference(before, night)) << "the camera is far from the point";
+    press("ctrl+s", "saved my.toml");
+    const std::string saved = content(look);
+    EXPECT_NE(saved.find("look = \"night.toml\""), std::string::npos) << saved;
+    EXPECT_NE(saved.find("distance = {"), std::string::npos) << saved;
+    click("mover/remove");
+    EXPECT_TRUE(wait_until([&] { return difference(before, shot()) == 0; }, 30)) << "as it was";
+    press("ctrl+s", "saved my.toml");
+    EXPECT_EQ(content(look).find("[[layer]]"), std::string::npos) << content(look);
+    leave();
+}
 
 TEST_F(CliViewerTasks, GradesAFrameByWheels) {
     const std::string look = write("my.toml",
