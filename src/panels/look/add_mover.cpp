@@ -96,9 +96,10 @@ void add_of_file(PanelState& state, const std::string& name) {
                       .start = state.document->options().folder,
                       .extensions = {".toml"},
                       .then = [&state, name](const std::filesystem::path& file) {
-                          const LookOptions& options = state.document->options();
-                          const std::string relative = file.lexically_proximate(options.folder).string();
-                          state.edit(fmt::format("add layer {}", name), [&](Look& look) -> Result<> {
+                          // Made when the panel has been drawn.
+                          state.edit(fmt::format("add layer {}", name), [&state, name, file](Look& look) -> Result<> {
+                              const LookOptions& options = state.document->options();
+                              const std::string relative = file.lexically_proximate(options.folder).string();
                               const Result<std::size_t> made = edit::add_layer_of(look, name, relative, options);
                               if (!made) return failure(made.error());
                               state.wanted_part = LookPart{.mover = {true, *made}};

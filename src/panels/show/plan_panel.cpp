@@ -54,8 +54,9 @@ void draw_plan_panel(const Plan* plan, bool is_compiling) {
         return;
     }
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(fmt::format("{} passes, {} of images{}", plan->passes.size(),
-                                       bytes_text(plan->transient_bytes), is_compiling ? ", compiling..." : "")
+    ImGui::TextUnformatted(fmt::format("{} pass{}, {} of images{}", plan->passes.size(),
+                                       plan->passes.size() == 1 ? "" : "es", bytes_text(plan->transient_bytes),
+                                       is_compiling ? ", compiling..." : "")
                                .c_str());
     ImGui::PopTextWrapPos();
     tooltip(fmt::format("Without sharing memory they would take {}. A frame reads {} and writes {}.",

@@ -317,8 +317,9 @@ float height_of_names(const Plan& plan, float width) {
 }  // namespace
 
 void draw_plan_picture(const Plan& plan) {
-    std::string text = fmt::format("{} passes, {} of images in {}", plan.passes.size(),
-                                   byte_text(plan.transient_bytes_unaliased), byte_text(plan.transient_bytes));
+    std::string text =
+        fmt::format("{} pass{}, {} of images in {}", plan.passes.size(), plan.passes.size() == 1 ? "" : "es",
+                    byte_text(plan.transient_bytes_unaliased), byte_text(plan.transient_bytes));
     if (!plan.left_out.empty()) text += fmt::format(", left out: {}", plan.left_out.size());
     ImGui::TextUnformatted(text.c_str());
     if (ImGui::BeginChild("picture")) {
