@@ -104,7 +104,9 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     LookView& of = **found;
     if (of.most().width == 0)
         if (Result<> done = of.fit(*source_, full_extent_, interface_->format()); !done) return done;
-    if (Result<> done = of.resize(made_extent_); !done) return done;
+    // Only frames of fewer lines have another size than their picture.
+    const VkExtent2D extent = scale_ < 1 ? made_extent_ : frame.color.used_region().extent;
+    if (Result<> done = of.resize(extent); !done) return done;
     if (is_fixed()) of.composer().wait_for_kernels();
     has_developed_ = true;
     // A plan that does not fit yet is on its way: the picture stays what it was.

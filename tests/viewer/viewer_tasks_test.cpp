@@ -30,11 +30,9 @@ class CliViewerTasks : public ViewerFixture {
 };
 
 TEST_F(CliViewerTasks, OpensASceneAndWalks) {
+    std::filesystem::copy_file(scenes_folder + "dungeon.scene.toml", path("dungeon.scene.toml"));
     start({"edit", frame("frame.exr"), "--size", "1280x720", "--paused"});
     click("view/open");
-    settle();
-    type("scenes");
-    press("Return");
     settle();
     type("dungeon.scene");
     press("Return", "opened dungeon.scene.toml");

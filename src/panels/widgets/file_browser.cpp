@@ -123,7 +123,8 @@ void FileBrowser::press_keys(const std::vector<std::size_t>& seen) {
     if (is_pressed(ImGuiKey_UpArrow)) move(-1);
     if (is_pressed(ImGuiKey_PageDown)) move(10);
     if (is_pressed(ImGuiKey_PageUp)) move(-10);
-    if (is_pressed(ImGuiKey_Enter) || is_pressed(ImGuiKey_KeyPadEnter)) accept();
+    // A press goes one folder on, however long it is.
+    if (is_pressed(ImGuiKey_Enter, false) || is_pressed(ImGuiKey_KeyPadEnter, false)) accept();
 }
 
 void FileBrowser::draw_head() {
