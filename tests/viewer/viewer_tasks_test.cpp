@@ -36,8 +36,8 @@ TEST_F(CliViewerTasks, OpensASceneAndWalks) {
     settle();
     type("dungeon.scene");
     press("Return", "opened dungeon.scene.toml");
+    EXPECT_TRUE(wait_until([&] { return shot().width > 160; }, 60)) << "as large as its place";
     const Picture opened = shot();
-    EXPECT_GT(opened.width, 160U) << "as large as its place";
     const auto [x, y] = middle("panel/Picture");
     drag({x, y}, {x + 120, y});
     const Picture turned = shot();
