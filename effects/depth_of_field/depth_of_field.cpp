@@ -128,16 +128,15 @@ PassImage add_tiles(PassBuilder& builder, PassImage color) {
 /// Focuses, and makes of the depth what the other passes then take for it.
 PassImage add_autofocus(PassBuilder& builder, PassImage depth) {
     const PassBuffer focus = builder.value("depth_of_field", 3);
-    builder.add_compute(
-        {.name = "focus",
-         .shader = "depth_of_field_focus.glsl",
-         .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
-         .buffers = {{"depth_of_field_focus", focus, ComputePassDesc::Access::ReadWrite, "float"}},
-         .workgroup = {32, 1},
-         .shared_bytes = 4 * autofocus_side * autofocus_side,
-         .groups = {1, 1},
-         .custom_vectors = 2,
-         .constants = focus_constants});
+    builder.add_compute({.name = "focus",
+                         .shader = "depth_of_field_focus.glsl",
+                         .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                         .buffers = {{"depth_of_field_focus", focus, ComputePassDesc::Access::ReadWrite, "float"}},
+                         .workgroup = {32, 1},
+                         .shared_bytes = 4 * autofocus_side * autofocus_side,
+                         .groups = {1, 1},
+                         .custom_vectors = 2,
+                         .constants = focus_constants});
     return builder.add({.name = "focused",
                         .shader = "depth_of_field_focused.glsl",
                         .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},

@@ -99,9 +99,9 @@ TEST(EffectAutofocus, GpuIsSharpWhereThePlaceIs) {
             EXPECT_LE(test::worst_difference(far, shown(focused(20, resolution), things)), 0x1p-7);
             EXPECT_GT(test::worst_difference(near, far), 0.1);
             EXPECT_EQ(near.at(45, 64).r, 1);
-            EXPECT_LE(test::worst_difference(shown(focusing(on_wall, resolution), sky),
-                                             shown(focused(1e5, resolution), sky)),
-                      0x1p-7);
+            EXPECT_LE(
+                test::worst_difference(shown(focusing(on_wall, resolution), sky), shown(focused(1e5, resolution), sky)),
+                0x1p-7);
         }
 }
 
@@ -131,8 +131,7 @@ TEST(EffectAutofocus, GpuNeitherALeafNorAGapCounts) {
         const DepthOfField field = focusing({45.5f / width, 64.5f / height});
         const double expected = 1 / depth_of_field_reference_seen(field, other.depth);
         const ReferenceImage out = test::developed_sequence(stack_of(field), {&other, 1})[0];
-        EXPECT_LE(test::worst_difference(
-                      out, test::developed_sequence(stack_of(focused(expected)), {&other, 1})[0]),
+        EXPECT_LE(test::worst_difference(out, test::developed_sequence(stack_of(focused(expected)), {&other, 1})[0]),
                   0x1p-7)
             << odd << " at " << distance;
         return expected;
@@ -237,10 +236,8 @@ TEST(EffectAutofocus, WithoutItThereAreNoPassesOfIt) {
         Composer composer(Device::assumed());
         composer.add(field);
         const ImageUse image{VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
-        const Plan plan = gpu::test::must(composer.plan({.max_extent = {1920, 1080},
-                                                         .color = image,
-                                                         .depth = {VK_FORMAT_D32_SFLOAT},
-                                                         .target = image}));
+        const Plan plan = gpu::test::must(composer.plan(
+            {.max_extent = {1920, 1080}, .color = image, .depth = {VK_FORMAT_D32_SFLOAT}, .target = image}));
         std::vector<std::string> out;
         for (const PlanPass& pass : plan.passes) out.push_back(pass.name);
         return out;

@@ -30,9 +30,9 @@ struct ThinLens {
     return {aperture / 2 * focal / (focus - focal) * height / sensor, focus};
 }
 
-/// In dioptres: the nearest and the farthest that a lens focuses at by itself, and from where on it moves the slower the
-/// nearer it is to what it moves toward. It takes the middle one of so many by so many distances about a place, lest a
-/// leaf or a gap count.
+/// In dioptres: the nearest and the farthest that a lens focuses at by itself, and from where on it moves the slower
+/// the nearer it is to what it moves toward. It takes the middle one of so many by so many distances about a place,
+/// lest a leaf or a gap count.
 inline constexpr double autofocus_nearest = 10, autofocus_farthest = 1e-5, autofocus_slow = 0.1;
 inline constexpr std::uint32_t autofocus_side = 5;
 

@@ -26,7 +26,8 @@ inline double depth_of_field_reference_circle(const DepthOfField& field, const C
     return std::clamp(lens.infinity * (1 - lens.focus * inverse), -limit, limit) / step;
 }
 
-/// Where the lens moves to in so many seconds, in dioptres: at constant speed, and at last in proportion to what is left.
+/// Where the lens moves to in so many seconds, in dioptres: at constant speed, and at last in proportion to what is
+/// left.
 inline double depth_of_field_reference_moved(double dioptres, double target, double speed, double seconds) {
     const double way = seconds * speed, left = std::abs(target - dioptres);
     const double steady = std::clamp(left - autofocus_slow, 0.0, way);
@@ -42,8 +43,7 @@ inline double depth_of_field_reference_seen(const DepthOfField& field, const Ref
                y = static_cast<std::int64_t>(field.autofocus_place.y * static_cast<float>(depth.height));
     std::array<double, side * side> seen{};
     for (std::int64_t i = 0; i < side * side; ++i) {
-        const double planar =
-            depth.clamped(x + (i % side - side / 2) * apart, y + (i / side - side / 2) * apart).r;
+        const double planar = depth.clamped(x + (i % side - side / 2) * apart, y + (i / side - side / 2) * apart).r;
         const double inverse = planar < 1e9 ? 1 / std::max(planar, 1e-6) : 0.0;
         seen[static_cast<std::size_t>(i)] = std::clamp(inverse, autofocus_farthest, autofocus_nearest);
     }

@@ -181,9 +181,8 @@ TEST_F(Document, WhatACameraSaysStandsInTheLookWhereItIsChanged) {
     const std::string camera = "[camera]\nfocus = 3\naperture = 4\n";
     const auto focus = [](LookDocument& document, float value) {
         const std::array words{std::bit_cast<std::uint32_t>(value)};
-        return document.edit("Focus", [&](Look& look) {
-            return set_value(look, "depth_of_field", "focus_distance", words);
-        });
+        return document.edit("Focus",
+                             [&](Look& look) { return set_value(look, "depth_of_field", "focus_distance", words); });
     };
     const fs::path path = write("a.scene.toml", camera + "[post_process]\nexposure = 1.0\n");
     LookDocument document = open(path, {.is_scene = true});

@@ -307,10 +307,11 @@ TEST_F(CliRenderPixels, TheScenesCameraSaysItsLens) {
     EXPECT_FALSE(blurred == drawn(yard, on));
     EXPECT_TRUE(blurred == drawn(yard, with(on, {"--depth-of-field-f-stop", "0.5", "--depth-of-field-focus-distance",
                                                  "3", "--depth-of-field-sensor-height", "400"})));
-    const std::vector<std::string> look = with(on, {"--look", write("plain.toml", "[post_process]\nexposure = 0.25\n")});
-    EXPECT_TRUE(drawn(text, look) == drawn(yard, with(look, {"--depth-of-field-f-stop", "0.5",
-                                                             "--depth-of-field-focus-distance", "3",
-                                                             "--depth-of-field-sensor-height", "400"})))
+    const std::vector<std::string> look =
+        with(on, {"--look", write("plain.toml", "[post_process]\nexposure = 0.25\n")});
+    EXPECT_TRUE(drawn(text, look) ==
+                drawn(yard, with(look, {"--depth-of-field-f-stop", "0.5", "--depth-of-field-focus-distance", "3",
+                                        "--depth-of-field-sensor-height", "400"})))
         << "the look of another file";
     const std::vector<std::string> farther = with(on, {"--depth-of-field-focus-distance", "9"});
     EXPECT_FALSE(drawn(text, farther) == blurred) << "a flag goes first";

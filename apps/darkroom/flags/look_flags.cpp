@@ -289,8 +289,7 @@ Result<Look> LookFlags::look_of_frames() const { return look(file, darkroom::def
 Result<Look> LookFlags::look(const std::filesystem::path& path, const Look& without_path,
                              const darkroom::CameraLens& lens) const {
     std::vector<std::string> warnings;
-    Result<Look> look =
-        path.empty() ? Result<Look>(without_path) : darkroom::read_look(path, options(&warnings), lens);
+    Result<Look> look = path.empty() ? Result<Look>(without_path) : darkroom::read_look(path, options(&warnings), lens);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
     resolve_ui(*look, path.parent_path());

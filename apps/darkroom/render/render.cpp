@@ -131,9 +131,9 @@ class Render {
         const scene::Lens& lens = scene_.camera.lens;
         flags_.add_lens_of(scene_.camera, job_.desc.lens);
         // Models hold no look.
-        Result<darkroom::Look> look = flags_.look.look(
-            scene::is_model_path(flags_.scene) ? "" : flags_.scene,
-            {.aperture = lens.aperture, .focus = lens.focus, .sensor_height = lens.sensor_height});
+        Result<darkroom::Look> look =
+            flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene,
+                             {.aperture = lens.aperture, .focus = lens.focus, .sensor_height = lens.sensor_height});
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         if (Result<> done = check_ui_files(look_); !done) return done;

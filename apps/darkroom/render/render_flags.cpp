@@ -60,8 +60,7 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
     sensor_height_
         .add_to(command, "Height of the sensor behind the lens; with the field of view it gives the focal length")
         .type_name("MM")
-        .default_str(
-            fmt::format("that of the scene's camera, else {}", darkroom::render::LensDesc().sensor_height))
+        .default_str(fmt::format("that of the scene's camera, else {}", darkroom::render::LensDesc().sensor_height))
         .group(SceneFlags::drawing_group);
     render_scale_
         .add_to(command,

@@ -57,9 +57,9 @@ TEST_F(LookCameraLens, OfAStackEachEntryHasWhatItDoesNotWrite) {
 
 TEST_F(LookCameraLens, OfALookAloneThereIsNone) {
     std::vector<std::string> warnings;
-    EXPECT_EQ(lens_of(parse_look(camera + "[post_process]\norder = \"scene_linear\"\n", "a.toml",
-                                 {.warnings = &warnings})),
-              usual);
+    EXPECT_EQ(
+        lens_of(parse_look(camera + "[post_process]\norder = \"scene_linear\"\n", "a.toml", {.warnings = &warnings})),
+        usual);
     EXPECT_EQ(warnings, std::vector<std::string>{"a.toml:1:2: unknown key 'camera'"});
 }
 
