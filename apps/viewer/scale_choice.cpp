@@ -12,7 +12,7 @@ namespace app {
 namespace {
 
 /// A finer step is taken where it is expected to need this part of what it may, so that two steps do not alternate.
-constexpr double margin = 0.8;
+constexpr double share_used = 0.8;
 /// A step of four times fewer pixels that gains less is not worth them; smaller steps gain less.
 constexpr double least_gain = 1.2, pixels_of_least_gain = 4;
 /// So many times too long, and the next picture must not wait for a third like it.
@@ -72,7 +72,7 @@ void ScaleChoice::add(double seconds) {
     }
     if (step_ > 0) {
         const double longer = std::min(std::pow(fewer(step_ - 1, step_), power_), most_gain);
-        if (median * longer < margin * most_) return change(step_ - 1);
+        if (median * longer < share_used * most_) return change(step_ - 1);
     }
     if (median <= most_ || step_ + 1 == scales_.size() || held_ > 0) return;
     // Where the next step would be too slow, too, nobody has to wait until it was tried.
