@@ -260,7 +260,7 @@ VkResult Presenter::State::make_swapchain(VkExtent2D window) {
         .preTransform = can.currentTransform,
         .compositeAlpha = alpha,
         .presentMode = has_mode ? wanted : VK_PRESENT_MODE_FIFO_KHR,
-        .clipped = VK_TRUE,
+        .clipped = VK_FALSE,  // what an image had is read again: only what has changed is drawn over it
         .oldSwapchain = swapchain.handle,
     };
     Swapchain made{.extent = extent};
