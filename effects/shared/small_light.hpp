@@ -31,7 +31,7 @@ inline std::uint32_t bright_part(VkExtent2D extent) {
 inline PassImage add_bright_light(PassBuilder& builder, PassImage source, std::uint32_t part,
                                   ConstantsFunction constants) {
     return builder.add({.name = "bright",
-                        .shader = "shared/bright_light.glsl",
+                        .shader = "shared/glow/bright_light.glsl",
                         .inputs = {{.name = "bright_source", .image = source}},
                         .output = builder.create({.name = "bright", .denominator = part}),
                         .custom_vectors = 1,
@@ -102,7 +102,7 @@ inline void fill_light_line(std::span<PassVector> out, VkExtent2D extent, bool i
 inline PassImage add_light_line(PassBuilder& builder, PassImage source, const std::string& name, std::uint32_t part,
                                 ConstantsFunction constants) {
     return builder.add({.name = name,
-                        .shader = "shared/light_line.glsl",
+                        .shader = "shared/glow/light_line.glsl",
                         .inputs = {{.name = "line_source", .image = source}},
                         .output = builder.create({.name = name, .denominator = part}),
                         .custom_vectors = light_line_vectors,
@@ -129,7 +129,7 @@ inline ReferenceImage blur_light_reference(const ReferenceImage& image, double v
 /// The pass that makes a picture with a quarter of the sides.
 inline PassImage add_quarter_light(PassBuilder& builder, PassImage source, std::uint32_t part) {
     return builder.add({.name = "quarter",
-                        .shader = "shared/quarter_light.glsl",
+                        .shader = "shared/glow/quarter_light.glsl",
                         .inputs = {{.name = "quarter_source", .image = source}},
                         .output = builder.create({.name = "quarter", .denominator = part})});
 }
