@@ -193,12 +193,17 @@ TEST(RenderCascades, FarthestInViewIsThatOfPointsOfTheBox) {
         box.add(camera.position + vec3(random.in(-20, 20), random.in(-20, 20), random.in(-20, 20)));
         const auto found = static_cast<float>(farthest_in_view(camera, box));
         float truth = 0;
+        int seen = 0;
         for (int sample = 0; sample < 20000; ++sample) {
             const vec3 part(random.in(0, 1), random.in(0, 1), random.in(0, 1));
             const vec4 clip = camera.projection * camera.view * vec4(glm::mix(box.low, box.high, part), 1);
-            if (std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w) truth = std::max(truth, clip.w);
+            if (std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) continue;
+            truth = std::max(truth, clip.w);
+            ++seen;
         }
         EXPECT_GE(found * 1.0001F, truth) << round;
+        // Of a sliver in view hardly one sample tells.
+        if (seen < 20) continue;
         EXPECT_LE(found, truth + 5) << round << ": samples miss corners, but not by much";
     }
 }
