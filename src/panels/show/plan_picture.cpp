@@ -219,22 +219,26 @@ class Picture {
     void head(const std::string& text, ImVec2 min, ImVec2 max) const {
         constexpr ImU32 dark = IM_COL32(16, 16, 16, 255);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        if (size.x + 6 <= max.x - min.x) return label(text, min, max, dark);
+        if (size.x + 6 <= max.x - min.x)
+            return label(text, min, {max.x, std::min(max.y, min.y + 1.25f * size.y)}, dark);
         const ImVec2 corner = place(min), end = place(max);
         const std::vector<std::string> lines = lines_of(text, max.x - min.x - 5);
         for (std::size_t i = 0; i < lines.size(); ++i) {
-            const float top = (corner.y + end.y - static_cast<float>(lines.size()) * size.y) / 2;
+            const float top =
+                std::min((corner.y + end.y - static_cast<float>(lines.size()) * size.y) / 2, corner.y + 3);
             plot_.list->AddText({corner.x + 3, top + static_cast<float>(i) * size.y}, dark, lines[i].c_str());
         }
         if (!lines.empty() || end.x - corner.x < size.y * 0.8f) return;
-        // Written where nothing cuts it off, then turned by a quarter and put into its place, from the bottom upwards.
+        // Written where nothing cuts it off, then turned by a quarter, so that it reads upwards and ends at the top,
+        // which is in view where the longest name is not.
         const ImVec2 from = place({0, 0});
         const int first = plot_.list->VtxBuffer.Size;
         plot_.list->AddText(from, dark, text.c_str());
+        const float bottom = std::min(end.y, corner.y + size.x + 6) - 3;
         const float left = std::round((corner.x + end.x - size.y) / 2);
         for (int i = first; i < plot_.list->VtxBuffer.Size; ++i) {
             ImVec2& at = plot_.list->VtxBuffer[i].pos;
-            at = {left + (at.y - from.y), end.y - 3 - (at.x - from.x)};
+            at = {left + (at.y - from.y), bottom - (at.x - from.x)};
         }
     }
 
