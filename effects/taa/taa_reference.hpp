@@ -7,13 +7,13 @@
 #include <cmath>
 #include <darkroom/effects/taa.hpp>
 #include <darkroom/reference.hpp>
-#include <numbers>
-#include <numeric>
 
 #include "shared/camera_reference.hpp"
 #include "shared/finite_reference.hpp"
 #include "shared/rcas_reference.hpp"
 #include "shared/sample_reference.hpp"
+#include "taa/taa_before.hpp"
+#include "taa/taa_tone_reference.hpp"
 
 namespace darkroom {
 
@@ -32,109 +32,11 @@ inline std::uint32_t taa_pre_roll(const Taa& taa) {
     return static_cast<std::uint32_t>(std::ceil(taa_most_frames(taa) * std::log(2 * 255)));
 }
 
-/// Row of the third coordinate: view space now to that of a moment ago, for a world that stands still.
-struct TaaDepthBefore {
-    std::array<double, 4> row{};
-};
-/// Rows of x, y (down) and w: view space now to the clip space of a moment ago.
-struct TaaMotion {
-    explicit TaaMotion(const Camera& camera);
-    std::array<std::array<double, 4>, 3> rows{};
-};
-
 namespace taa {
-
-using Row = std::array<double, 4>;
-
-inline Row row_of(const Matrix& matrix, std::size_t row) {
-    return {matrix[row], matrix[4 + row], matrix[8 + row], matrix[12 + row]};
-}
-
-/// `row` behind the way back from view space, which turns and moves.
-inline Row behind_inverse(const Row& row, const Matrix& view) {
-    Row out{0, 0, 0, row[3]};
-    for (std::size_t j = 0; j < 3; ++j) {
-        for (std::size_t k = 0; k < 3; ++k) out[j] += row[k] * double{view[k * 4 + j]};
-        out[3] -= out[j] * double{view[12 + j]};
-    }
-    return out;
-}
-
-inline Row product(const Row& row, const Matrix& matrix) {
-    Row out{};
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t k = 0; k < 4; ++k) out[j] += row[k] * double{matrix[j * 4 + k]};
-    return out;
-}
-
-}  // namespace taa
-
-inline TaaDepthBefore taa_depth_before(const Camera& camera) {
-    return {taa::behind_inverse(taa::row_of(camera.previous_view, 2), camera.view)};
-}
-
-inline TaaMotion::TaaMotion(const Camera& camera) {
-    constexpr std::array<std::size_t, 3> of_clip{0, 1, 3};
-    for (std::size_t i = 0; i < 3; ++i)
-        rows[i] = taa::behind_inverse(
-            taa::product(taa::row_of(camera.previous_projection, of_clip[i]), camera.previous_view), camera.view);
-    if (!camera.is_y_down)
-        for (double& number : rows[1]) number = -number;
-}
-
-namespace taa {
-
-using Toned = std::array<double, 3>;
 
 // The same numbers as in taa_gather.glsl and taa_mask.glsl.
 constexpr double edge = 0.03, nearer = 0.02, loss = 2.2, reach = 1.25, still_noise = 3, moving_noise = 0.5,
                  most_noise = 0.5, mask_per_change = 4;
-
-/// YCoCg.
-inline Toned opponent(const Rgba& c) {
-    return {c.r / 4 + c.g / 2 + c.b / 4, c.r / 2 - c.b / 2, -c.r / 4 + c.g / 2 - c.b / 4};
-}
-
-inline Toned toned(const Rgba& c, double unit) {
-    const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
-    return opponent({c.r * scale, c.g * scale, c.b * scale, 1});
-}
-
-inline Rgba shown(const Toned& t) {
-    return {std::max(t[0] - t[2] + t[1], 0.0), std::max(t[0] + t[2], 0.0), std::max(t[0] - t[2] - t[1], 0.0), 1};
-}
-
-inline Rgba light(const Rgba& shown, double unit, double alpha) {
-    const double scale = unit / std::max(1 - std::max({shown.r, shown.g, shown.b}), 1e-7);
-    return {std::min(shown.r * scale, 65504.0), std::min(shown.g * scale, 65504.0), std::min(shown.b * scale, 65504.0),
-            alpha};
-}
-
-/// Of the light that is shown as half of white, in 32nds.
-inline double stops_of(double exposure) {
-    return std::floor(0.5 - 32 * std::log2(std::clamp(exposure, 1e-6, 1e6))) / 32;
-}
-
-inline Toned sum(const Toned& a, const Toned& b, double scale) {
-    return {a[0] + b[0] * scale, a[1] + b[1] * scale, a[2] + b[2] * scale};
-}
-
-/// Along an axis, at `f` of the way to the next pixel: a Lanczos filter of three lobes with a sum of 1, whose two
-/// texels in the middle are one filtered tap.
-struct Taps {
-    explicit Taps(double f) {
-        const auto weight = [](double x) {
-            const double p = std::numbers::pi * x;
-            return std::abs(x) < 1e-9 ? 1 : std::abs(x) < 3 ? 3 * std::sin(p) * std::sin(p / 3) / (p * p) : 0;
-        };
-        const double second = weight(f), third = weight(1 - f);
-        weights = {weight(f + 2), weight(f + 1), second + third, weight(2 - f), weight(3 - f)};
-        const double all = std::reduce(weights.begin(), weights.end());
-        for (double& w : weights) w /= all;
-        places[2] = third / (second + third);
-    }
-    std::array<double, 5> weights{}, places{-2, -1, 0, 2, 3};
-};
 
 /// One frame of a sequence.
 class Gather {
