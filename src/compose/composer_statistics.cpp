@@ -39,9 +39,8 @@ Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& de
     schedule.derive(values.gates(), std::vector<graph::ImportState>(program->imports.size()), 0);
 
     std::vector<KernelStatistics> out;
-    for (std::uint32_t i = 0; i < program->passes.size(); ++i) {
-        const std::uint32_t kept = compiled->kept_pass_of({i});
-        if (kept == ~0u || !schedule.runs(kept)) continue;
+    for (const auto& [kept, i] : plan::passes_in_order(*program, *compiled)) {
+        if (!schedule.runs(kept)) continue;
         const plan::ProgramPass& pass = program->passes[i];
         auto one = statistics_of(
             context, pass,

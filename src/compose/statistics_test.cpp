@@ -55,6 +55,19 @@ TEST_F(ComposeStatistics, EachPassOfThePlanInEitherStage) {
     EXPECT_FALSE(exports(compute.front()));
 }
 
+TEST_F(ComposeStatistics, PassesSideBySideHaveTheirOwn) {
+    for (const char* const effect : {"ssao", "volumetric"})
+        if (find_effect(effect) == nullptr) GTEST_SKIP() << "this build has no " << effect;
+    Composer composer(*device);
+    for (const char* const effect : {"ssao", "volumetric"}) add(composer, effect);
+    CompileDesc of_a_scene = desc();
+    of_a_scene.depth = {VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT};
+    of_a_scene.has_shadows = true;
+    const auto plan = test::must(composer.plan(of_a_scene));
+    ASSERT_LT(plan.rounds(), plan.passes.size());
+    statistics(composer, of_a_scene);
+}
+
 TEST_F(ComposeStatistics, KernelsAreThoseOfThePresentSwitches) {
     Composer composer(*device);
     for (const char* const effect : {"tonemap", "encode"}) add(composer, effect);

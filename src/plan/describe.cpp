@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "gpu/resource/formats.hpp"
 #include "graph/schedule.hpp"
@@ -138,14 +137,6 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
     return out;
 }
 
-/// Numbers in the graph and in the program of what the graph kept, as it is recorded.
-std::map<std::uint32_t, std::uint32_t> passes_in_order(const Program& program, const graph::Compiled& compiled) {
-    std::map<std::uint32_t, std::uint32_t> out;
-    for (std::uint32_t i = 0; i < program.passes.size(); ++i)
-        if (const std::uint32_t kept = compiled.kept_pass_of({i}); kept != ~0u) out.emplace(kept, i);
-    return out;
-}
-
 /// Numbers without those rounds none of whose passes runs.
 void close_up_rounds(Plan& plan) {
     std::vector<std::uint32_t> rounds;
@@ -172,6 +163,13 @@ void add_lifetimes(Plan& plan) {
 }
 
 }  // namespace
+
+std::map<std::uint32_t, std::uint32_t> passes_in_order(const Program& program, const graph::Compiled& compiled) {
+    std::map<std::uint32_t, std::uint32_t> out;
+    for (std::uint32_t i = 0; i < program.passes.size(); ++i)
+        if (const std::uint32_t kept = compiled.kept_pass_of({i}); kept != ~0u) out.emplace(kept, i);
+    return out;
+}
 
 Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
                       std::span<const Entry* const> entries) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <darkroom/composer.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -280,6 +281,11 @@ struct PlannerTraits {
     const Touch touch = entry.info->touch;
     return touch == Touch::Pointwise || touch == Touch::Warp || !entry.is_plain();
 }
+
+/// Numbers in the graph and in the program of the passes that the graph kept, in the order in which they are recorded:
+/// those of one round lie beside each other.
+[[nodiscard]] std::map<std::uint32_t, std::uint32_t> passes_in_order(const Program& program,
+                                                                     const graph::Compiled& compiled);
 
 /// The program as users read it: the passes that run with the entries' present values, in a frame of
 /// example_values().
