@@ -86,7 +86,8 @@ void circle_constants(const void* parameters, const PassContext& context, std::s
                   limit / pixels, depth.sky};
     }
     const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
-    out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.sharp), static_cast<float>(blur.slope)};
+    out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.to * blur.slope),
+              static_cast<float>(blur.slope)};
 }
 
 constexpr std::uint32_t most_pairs = 2 * most_rings * (most_rings + 1);
@@ -100,7 +101,7 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
     const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
     const double shift = 2 * double{field.cats_eye} / diagonal;
     out[0] = {static_cast<float>(blur.least), 0, static_cast<float>(width * shift), static_cast<float>(height * shift)};
-    out[1] = {static_cast<float>(blur.own), static_cast<float>(blur.sharp), static_cast<float>(blur.slope), 0};
+    out[1] = {static_cast<float>(blur.to * blur.slope), static_cast<float>(blur.slope), 0, 0};
     std::size_t next = 2;
     for (std::uint32_t ring = 1; ring <= most_rings; ++ring)
         for (std::uint32_t i = 0; i < 8 * ring; i += 2) {

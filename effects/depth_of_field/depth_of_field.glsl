@@ -14,7 +14,7 @@ vec4 depth_of_field(vec4 color, Pixel pixel, DepthOfField parameters) {
     float inverse = (depth * distances.z + distances.w) / (depth * distances.x + distances.y);
     inverse = depth != radii.w && inverse > 0.0 ? min(inverse, 1e4) : 0.0;
     float left = depth_of_field_left(min(abs(radii.x - radii.y * inverse), radii.z), blur.y, blur.x);
-    float blurred = behind.a > 0.0 ? depth_of_field_weight(left, blur.y, blur.z, blur.w) : 0.0;
+    float blurred = behind.a > 0.0 ? depth_of_field_weight(left, blur.zw) : 0.0;
     if (blurred == 0.0 && near.a == 0.0) return color;
     vec3 seen = sanitize(color).rgb * (1.0 - blurred) + behind.rgb * (blurred / max(behind.a, 1e-6));
     return vec4(seen * (1.0 - near.a) + near.rgb, color.a);

@@ -7,9 +7,9 @@ float depth_of_field_left(float radius, float own, float pixels_a_texel) {
     return beyond * sqrt(0.5 * (rest + sqrt(rest * rest + own * own)));
 }
 
-// How much of what is blurred so is laid over the sharp picture: the share of the circle's variance in its own, from
-// `sharp` on, at which a circle is sharp.
-float depth_of_field_weight(float left, float own, float sharp, float slope) {
-    float square = max(left * left, 1e-6);
-    return clamp((1.0 - 0.25 * own * own / (square * (square + own)) - sharp) * slope, 0.0, 1.0);
+// How much of what is blurred so is laid over the sharp picture: from a radius at which a circle is sharp to one at which it
+// is not, ever more slowly. ends = (the latter times slope, slope).
+float depth_of_field_weight(float left, vec2 ends) {
+    float missing = clamp(ends.x - left * ends.y, 0.0, 1.0);
+    return 1.0 - missing * missing;
 }

@@ -55,7 +55,7 @@ struct AutofocusLens {
 /// What the passes blur by themselves, as a circle whose radius has the square `own` does, in texels of `step` pixels,
 /// and from which radius on something counts as blurred.
 struct DepthOfFieldBlur {
-    double step = 1, own = 0, least = 0.01, sharp = 0, slope = 1;
+    double step = 1, own = 0, least = 0.01, to = 1, slope = 1;
     /// Radius that is left to blur of a circle: variances are subtracted where they are large enough, in a smooth way.
     /// Up to half a pixel nothing is, so that what is sharp covers nothing beside itself.
     [[nodiscard]] double left(double radius) const {
@@ -65,22 +65,20 @@ struct DepthOfFieldBlur {
         const double rest = radius * radius - own;
         return std::sqrt(0.5 * (rest + std::hypot(rest, own)));
     }
-    /// The share of the circle's variance in that of what is blurred so: as much of it laid over the sharp picture
-    /// spreads a point as the circle does.
-    [[nodiscard]] double share(double left) const {
-        const double square = std::max(left * left, 1e-6);
-        return 1 - own * own / 4 / (square * (square + own));
+    /// How much of the blurred picture is laid over the sharp one: nearly the share of the circle's variance in that of
+    /// what is blurred so, by which a point is spread as the circle does.
+    [[nodiscard]] double weight(double left) const {
+        const double missing = std::clamp((to - left) * slope, 0.0, 1.0);
+        return 1 - missing * missing;
     }
-    /// How much of the blurred picture is laid over the sharp one.
-    [[nodiscard]] double weight(double left) const { return std::clamp((share(left) - sharp) * slope, 0.0, 1.0); }
 };
 [[nodiscard]] inline DepthOfFieldBlur depth_of_field_blur(std::uint32_t step) {
     // The variance of a disc is a quarter of its radius squared. That of samples at the nearest texel is 1/12; of half
     // a size also 1/16, the mean of two by two pixels, and 3/16, the bilinear mix of texels at quarters.
     DepthOfFieldBlur blur{.step = double(step), .own = step == 1 ? 4.0 / 12 : 4.0 / 12 + 4.0 / 16 + 4 * 3.0 / 16};
-    // A radius of half a pixel is sharp. A tenth of a highlight that is left sharp would be seen in its disc.
-    blur.sharp = blur.share(blur.full(0.5 / step));
-    blur.slope = 1 / (0.9 - blur.sharp);
+    // A radius of half a pixel is sharp.
+    blur.to = 0.85 * std::sqrt(blur.own);
+    blur.slope = 1 / (blur.to - blur.full(0.5 / step));
     return blur;
 }
 
