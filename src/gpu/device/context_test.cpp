@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <thread>
@@ -78,18 +79,27 @@ TEST(GpuContext, KnowsTheLimitsThatKernelsMustKeep) {
     VkPhysicalDeviceProperties properties{};
     context.vk.GetPhysicalDeviceProperties(context.physical_device, &properties);
     const VkPhysicalDeviceLimits& limits = properties.limits;
-    EXPECT_EQ(context.traits.max_workgroup_invocations, limits.maxComputeWorkGroupInvocations);
-    EXPECT_EQ(context.traits.max_workgroup_size[2], limits.maxComputeWorkGroupSize[2]);
-    EXPECT_LE(context.traits.max_storage_images, limits.maxPerStageDescriptorStorageImages);
-    EXPECT_LE(context.traits.max_storage_images, limits.maxFragmentCombinedOutputResources);
-    EXPECT_LE(context.traits.max_sampled_images, limits.maxPerStageDescriptorSampledImages);
-    EXPECT_LE(context.traits.max_sampled_images, limits.maxPerStageDescriptorSamplers);
-    EXPECT_EQ(context.traits.max_uniform_range, limits.maxUniformBufferRange);
+    const Traits& traits = context.traits;
+    EXPECT_EQ(traits.max_workgroup_invocations, limits.maxComputeWorkGroupInvocations);
+    EXPECT_TRUE(std::ranges::equal(traits.max_workgroup_size, limits.maxComputeWorkGroupSize));
+    EXPECT_EQ(traits.max_shared_bytes, limits.maxComputeSharedMemorySize);
+    EXPECT_EQ(traits.max_storage_images,
+              std::min(limits.maxPerStageDescriptorStorageImages, limits.maxFragmentCombinedOutputResources));
+    EXPECT_EQ(traits.max_sampled_images,
+              std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers));
+    EXPECT_EQ(traits.max_uniform_range, limits.maxUniformBufferRange);
+    EXPECT_EQ(traits.max_storage_range, limits.maxStorageBufferRange);
+    EXPECT_EQ(traits.uniform_alignment, limits.minUniformBufferOffsetAlignment);
+    EXPECT_EQ(traits.storage_alignment, limits.minStorageBufferOffsetAlignment);
+    EXPECT_EQ(traits.sub_texel_bits, limits.subTexelPrecisionBits);
+    EXPECT_EQ(traits.max_image_dimension, limits.maxImageDimension2D);
+    EXPECT_EQ(traits.sample_counts, limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
+                                        limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts);
     // What Vulkan promises is what is assumed where nothing is known.
     const Traits least;
-    EXPECT_LE(least.max_workgroup_invocations, context.traits.max_workgroup_invocations);
-    EXPECT_LE(least.max_storage_images, context.traits.max_storage_images);
-    EXPECT_LE(least.max_uniform_range, context.traits.max_uniform_range);
+    EXPECT_LE(least.max_workgroup_invocations, traits.max_workgroup_invocations);
+    EXPECT_LE(least.max_storage_images, traits.max_storage_images);
+    EXPECT_LE(least.max_uniform_range, traits.max_uniform_range);
 }
 
 /// What the null driver's cache holds, and how often it was asked for.
