@@ -184,6 +184,7 @@ void build_at(PassBuilder& builder) {
     builder.side("depth_of_field_behind", filled[0], {});
     builder.side("depth_of_field_near", filled[1], {});
     builder.loaded_side("depth_of_field_depth", depth, {});
+    builder.loaded_side("depth_of_field_picture", builder.picture(), {});
     builder.end_constants(3, circle_constants<denominator, is_focused>);
 }
 

@@ -13,3 +13,8 @@ float depth_of_field_weight(float left, vec2 ends) {
     float missing = clamp(ends.x - left * ends.y, 0.0, 1.0);
     return 1.0 - missing * missing;
 }
+
+// The same for circles of the far field, by their radius in pixels: smaller ones are made of the pixels around.
+float depth_of_field_large(float radius) {
+    return clamp((radius - 2.5) * 1.2, 0.0, 1.0);
+}

@@ -14,6 +14,6 @@ float depth_of_field_circle(float depth) {
 
 // The same with what is left to blur.
 float depth_of_field_to_blur(float circle) {
-    float left = depth_of_field_left(abs(circle), custom[2].y, custom[2].x);
-    return circle < 0.0 ? -left : left;
+    if (circle < 0.0) return -depth_of_field_left(-circle, custom[2].y, custom[2].x);
+    return circle * custom[2].x < 2.0 ? 0.0 : sqrt(max(circle * circle - custom[2].y, 0.001));
 }

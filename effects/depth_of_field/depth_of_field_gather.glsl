@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What reaches a texel: see the page. result[0]: what is seen behind the near field, where that is no sharp pixel;
 // result[1]: the near field. Both premultiplied. custom[0] = (smallest radius that is a blur, 0, shift of the barrel's circle
-// from edge to edge of the picture in radii), custom[1] = (what depth_of_field_weight() takes, 0, 0), custom[2] ...: two samples
-// each, rings of radius 1, 2, 3 ... about the centre.
+// from edge to edge of the picture in radii), custom[1] = (what depth_of_field_weight() takes, 0, 0), custom[2] ...: two
+// samples each, rings of radius 1, 2, 3 ... about the centre.
 #include "depth_of_field_blur.glsl"
 #include "depth_of_field_rings.glsl"
 

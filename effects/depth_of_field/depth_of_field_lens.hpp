@@ -53,11 +53,11 @@ struct AutofocusLens {
 }
 
 /// What the passes blur by themselves, as a circle whose radius has the square `own` does, in texels of `step` pixels,
-/// and from which radius on something counts as blurred.
+/// and from which radius on something counts as blurred. Radii are in texels.
 struct DepthOfFieldBlur {
     double step = 1, own = 0, least = 0.01, to = 1, slope = 1;
-    /// Radius that is left to blur of a circle: variances are subtracted where they are large enough, in a smooth way.
-    /// Up to half a pixel nothing is, so that what is sharp covers nothing beside itself.
+    /// What is left to blur of a circle of the near field: variances are subtracted where they are large enough, in a
+    /// smooth way. Up to half a pixel nothing is, so that what is sharp covers nothing beside itself.
     [[nodiscard]] double left(double radius) const {
         return full(radius) * std::clamp(2 * radius * step - 1, 0.0, 1.0);
     }
@@ -65,17 +65,26 @@ struct DepthOfFieldBlur {
         const double rest = radius * radius - own;
         return std::sqrt(0.5 * (rest + std::hypot(rest, own)));
     }
-    /// How much of the blurred picture is laid over the sharp one: nearly the share of the circle's variance in that of
+    /// The same of the far field, where smaller circles are made of the pixels around.
+    [[nodiscard]] double left_behind(double radius) const {
+        return radius * step < 2 ? 0 : std::sqrt(std::max(radius * radius - own, 0.001));
+    }
+    /// How much of what is blurred is laid over the sharp picture: nearly the share of the circle's variance in that of
     /// what is blurred so, by which a point is spread as the circle does.
     [[nodiscard]] double weight(double left) const {
         const double missing = std::clamp((to - left) * slope, 0.0, 1.0);
         return 1 - missing * missing;
     }
+    /// The same over what is made of the pixels around.
+    [[nodiscard]] double weight_behind(double radius) const {
+        return std::clamp((radius * step - 2.5) * 1.2, 0.0, 1.0);
+    }
 };
 [[nodiscard]] inline DepthOfFieldBlur depth_of_field_blur(std::uint32_t step) {
     // The variance of a disc is a quarter of its radius squared. That of samples at the nearest texel is 1/12; of half
-    // a size also 1/16, the mean of two by two pixels, and 3/16, the bilinear mix of texels at quarters.
-    DepthOfFieldBlur blur{.step = double(step), .own = step == 1 ? 4.0 / 12 : 4.0 / 12 + 4.0 / 16 + 4 * 3.0 / 16};
+    // a size it is 1/16, the mean of two by two pixels, and 3/16, the bilinear mix of texels at quarters, and that of
+    // samples less, as the smallest rings lie within a texel.
+    DepthOfFieldBlur blur{.step = double(step), .own = step == 1 ? 4.0 / 12 : 4.0 / 16 + 4 * 3.0 / 16 + 0.1};
     // A radius of half a pixel is sharp.
     blur.to = 0.85 * std::sqrt(blur.own);
     blur.slope = 1 / (blur.to - blur.full(0.5 / step));

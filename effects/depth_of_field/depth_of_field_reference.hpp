@@ -91,9 +91,9 @@ inline ReferenceImage depth_of_field_reference_color(const DepthOfField& field, 
                 sum = {sum.r + colors[i]->r * weight, sum.g + colors[i]->g * weight, sum.b + colors[i]->b * weight,
                        sum.a + weight};
             }
+            const DepthOfFieldBlur blur = depth_of_field_blur(step);
             out.at(x, y) = {finite_reference(sum.r / sum.a), finite_reference(sum.g / sum.a),
-                            finite_reference(sum.b / sum.a),
-                            std::copysign(depth_of_field_blur(step).left(std::abs(own)), own)};
+                            finite_reference(sum.b / sum.a), own < 0 ? -blur.left(-own) : blur.left_behind(own)};
         }
     return out;
 }
@@ -203,6 +203,26 @@ inline DepthOfFieldFields depth_of_field_reference_gather(const DepthOfField& fi
     return sums;
 }
 
+/// A small circle of the far field, in pixels: the mean of those around, each as far as it is covered. Of up to 1.5
+/// pixels the mean over whole pixels would spread more than a disc does: less is taken.
+inline Rgba depth_of_field_reference_small(const DepthOfField& field, const ReferenceInput& input, std::uint32_t x,
+                                           std::uint32_t y, double own) {
+    Rgba sum{0, 0, 0, 0};
+    if (own < 1.5) own = 0.5 + std::pow(own - 0.5, 2);
+    for (int i = 0; i < 25; ++i) {
+        const std::int64_t column = std::int64_t{x} + i % 5 - 2, row = std::int64_t{y} + i / 5 - 2;
+        const double circle = depth_of_field_reference_circle(field, input.camera, input.depth->clamped(column, row).r,
+                                                              input.picture->height, 1);
+        const double weight = std::clamp(
+            std::min(circle, own) - std::hypot((i % 5 - 2) * double{field.anamorphic_ratio}, i / 5 - 2) + 0.5, 0.0,
+            1.0);
+        const Rgba& seen = input.picture->clamped(column, row);
+        sum = {sum.r + finite_reference(seen.r) * weight, sum.g + finite_reference(seen.g) * weight,
+               sum.b + finite_reference(seen.b) * weight, sum.a + weight};
+    }
+    return {sum.r / sum.a, sum.g / sum.a, sum.b / sum.a, 1};
+}
+
 inline ReferenceImage depth_of_field_reference(const void* parameters, const ReferenceInput& input) {
     DepthOfField field = *static_cast<const DepthOfField*>(parameters);
     if (field.autofocus) field.focus_distance = depth_of_field_reference_focus(field, input);
@@ -245,14 +265,18 @@ inline ReferenceImage depth_of_field_reference(const void* parameters, const Ref
             const Rgba over = sample_reference(near, u, v), far = sample_reference(behind, u, v);
             const double circle =
                 depth_of_field_reference_circle(field, input.camera, input.depth->at(x, y).r, picture.height, step);
-            const double blurred = far.a > 0 ? blur.weight(blur.left(std::abs(circle))) : 0.0;
+            const double weight = circle < 0 ? blur.weight(blur.left(std::abs(circle))) : blur.weight_behind(circle);
+            const double blurred = far.a > 0 ? weight : 0.0;
+            const bool is_small = circle * step > 0.5 && blurred < 1;
             Rgba& pixel = out.at(x, y);
-            if (blurred == 0 && over.a == 0) continue;
-            const auto laid = [&](double sharp, double seen, double covering) {
-                const double under = finite_reference(sharp) * (1 - blurred) + seen * blurred / std::max(far.a, 1e-6);
-                return under * (1 - over.a) + covering;
+            if (blurred == 0 && over.a == 0 && !is_small) continue;
+            const Rgba sharp =
+                is_small ? depth_of_field_reference_small(field, input, x, y, circle * step) : Rgba{pixel};
+            const auto laid = [&](double under, double seen, double covering) {
+                const double mixed = finite_reference(under) * (1 - blurred) + seen * blurred / std::max(far.a, 1e-6);
+                return mixed * (1 - over.a) + covering;
             };
-            pixel = {laid(pixel.r, far.r, over.r), laid(pixel.g, far.g, over.g), laid(pixel.b, far.b, over.b), pixel.a};
+            pixel = {laid(sharp.r, far.r, over.r), laid(sharp.g, far.g, over.g), laid(sharp.b, far.b, over.b), pixel.a};
         }
     return out;
 }
