@@ -189,6 +189,25 @@ TEST(ComposeColorState, ColoursAreThoseOfTheReferenceOnEveryTarget) {
     }
 }
 
+// IEC 61966-2-1: 12.92 times the light up to 0.0031308.
+TEST(ComposeColorState, TheCurveOfSrgbIsALineNearBlackAlone) {
+    ReferenceImage picture(16, 2);
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+        for (std::uint32_t y = 0; y < 2; ++y) {
+            const double light = 0.0026 + 0.0001 * x;
+            picture.at(x, y) = {light, light, light, 1};
+        }
+    picture = test::round_to_float(picture);
+    for (const ColorState& target : {srgb_color, p3_color}) {
+        const ReferenceImage codes = test::develop([](Composer&) {}, picture, {.target_color = target});
+        for (std::uint32_t x = 0; x < picture.width; ++x) {
+            const double light = picture.at(x, 0).r;
+            EXPECT_NEAR(codes.at(x, 0).r, light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055,
+                        5e-6);
+        }
+    }
+}
+
 TEST(ComposeColorState, TheInterfaceHasItsLuminanceWhateverTheTargetsWhite) {
     const ReferenceImage ui = half_covered(1), picture = test::uniform(16, 8, {0.5, 0.5, 0.5, 1});
     for (const ColorState& told : {pq_color, hlg_color, scrgb_color}) {

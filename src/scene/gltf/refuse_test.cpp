@@ -195,6 +195,7 @@ TEST_F(SceneGltfRefuse, WaysOutOfTheFolder) {
     fs::create_directories(inside / "sub");
     fs::create_symlink(file("outside.bin"), inside / "link.bin");
     put(inside / "data file.bin", std::string(64, '\0'));
+    put(inside / "Jot it 0.bin", std::string(64, '\0'));
     for (const std::string& uri :
          {std::string("../outside.bin"), file("outside.bin").string(), std::string("%2e%2e/outside.bin"),
           std::string("%2E%2E%2Foutside.bin"), std::string("sub/../../outside.bin"), std::string("..\\outside.bin"),
@@ -209,7 +210,9 @@ TEST_F(SceneGltfRefuse, WaysOutOfTheFolder) {
         EXPECT_NE(model.error().text.find("/buffers/0"), std::string::npos) << model.error().text;
     }
     for (const std::string& uri : {std::string("data%20file.bin"), std::string("data file.bin"),
-                                   std::string("sub/../data%20file.bin"), std::string("./data file.bin")}) {
+                                   std::string("sub/../data%20file.bin"), std::string("./data file.bin"),
+                                   // Every kind of digit, the first and the last ones.
+                                   std::string("%4A%6ft %69%74 %30.bin"), std::string("%4a%6Ft%20it 0%2Ebin")}) {
         TestModel test;
         test.add_triangle();
         test.json["buffers"] = {{{"byteLength", test.bytes.size()}, {"uri", uri}}};
