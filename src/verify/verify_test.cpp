@@ -21,7 +21,8 @@ namespace {
 /// what it is to plant.
 class PlantedDevice {
   public:
-    explicit PlantedDevice(const test::Mistake& mistake) {
+    /// Kernels are those of a GPU, whichever the device is, or those of the device.
+    explicit PlantedDevice(const test::Mistake& mistake, bool is_planned_for_gpu = false) {
         // A cache of its own: what is compiled wrongly stays out of the user's.
         Result<Device> made = Device::create(
             {.cache_folder = (std::filesystem::path(::testing::TempDir()) / "darkroom_planted").string()});
@@ -29,6 +30,7 @@ class PlantedDevice {
         if (!made) return;
         device_.emplace(std::move(*made));
         gpu::Context& context = device_->context();
+        if (is_planned_for_gpu) context.traits.is_software = false;
         real = context.vk.CreateShaderModule;
         planted = &mistake;
         places = 0;
@@ -89,13 +91,17 @@ TEST_F(VerifyGpu, FindsNothingWhereKernelsAreRight) {
     Options options = quick({"exposure", "sharpen"});
     options.subjects.random_sets = 1;
     options.sizes.push_back({5, 3});
-    const Report report = verified(*device, options);
-    for (const Finding& finding : report.findings) ADD_FAILURE() << text_of(finding);
-    // Two effects as they are and with random values, and once more at the other size; two stages, complete and lean.
-    EXPECT_EQ(report.pictures, (4 + 2) * 4U);
-    EXPECT_GE(report.kernels, 8U);
-    EXPECT_TRUE(report.not_tried.empty());
-    EXPECT_TRUE(report.unchanged.empty());
+    for (const bool is_planned_for_gpu : {false, true}) {
+        if (is_planned_for_gpu) device->context().traits.is_software = false;
+        const Report report = verified(*device, options);
+        for (const Finding& finding : report.findings) ADD_FAILURE() << text_of(finding);
+        // Two effects as they are and with random values, and once more at the other size; two stages, complete and
+        // lean.
+        EXPECT_EQ(report.pictures, (4 + 2) * 4U);
+        EXPECT_TRUE(is_planned_for_gpu || report.kernels >= 8);
+        EXPECT_TRUE(report.not_tried.empty());
+        EXPECT_TRUE(report.unchanged.empty());
+    }
 }
 
 TEST_F(VerifyGpu, NamesKernelPixelAndTheLeastThatShowsIt) {
@@ -130,22 +136,30 @@ TEST_F(VerifyGpu, ADeviceOfAHostIsRefused) {
     EXPECT_FALSE(run(assumed, quick({"exposure"})));
 }
 
+// On a driver of the processor also in the kernels that a GPU gets, which lack its forms.
 TEST_F(VerifyGpu, TwentyPlantedMistakesAreFoundByName) {
     ASSERT_EQ(test::mistakes().size(), 20U);
-    std::size_t found = 0;
-    for (const test::Mistake& mistake : test::mistakes()) {
-        if (find_effect(mistake.effect) == nullptr) GTEST_SKIP() << "this build has no effect " << mistake.effect;
-        SCOPED_TRACE(mistake.name);
-        PlantedDevice planted(mistake);
-        const Report report = verified(planted.device(), quick({mistake.effect}, true));
-        EXPECT_GT(PlantedDevice::place_count(), 0U) << "no kernel of " << mistake.effect << " has a place for it";
-        const bool is_found =
-            !report.findings.empty() && report.findings[0].subject.steps[0].info == find_effect(mistake.effect);
-        found += is_found;
-        std::printf("%s  %s: %s\n", is_found ? "found " : "MISSED", mistake.name,
-                    is_found ? text_of(report.findings[0]).c_str() : mistake.effect);
+    const Result<Device> device = Device::create();
+    ASSERT_TRUE(device) << device.error().text;
+    for (const bool is_planned_for_gpu : {false, true}) {
+        if (is_planned_for_gpu && !device->info().is_software) continue;
+        std::size_t found = 0;
+        for (const test::Mistake& mistake : test::mistakes()) {
+            if (find_effect(mistake.effect) == nullptr) GTEST_SKIP() << "this build has no effect " << mistake.effect;
+            SCOPED_TRACE(mistake.name);
+            PlantedDevice planted(mistake, is_planned_for_gpu);
+            Options options = quick({mistake.effect}, true);
+            options.sizes = {mistake.extent};
+            const Report report = verified(planted.device(), options);
+            EXPECT_GT(PlantedDevice::place_count(), 0U) << "no kernel of " << mistake.effect << " has a place for it";
+            const bool is_found =
+                !report.findings.empty() && report.findings[0].subject.steps[0].info == find_effect(mistake.effect);
+            found += is_found;
+            std::printf("%s  %s: %s\n", is_found ? "found " : "MISSED", mistake.name,
+                        is_found ? text_of(report.findings[0]).c_str() : mistake.effect);
+        }
+        EXPECT_GE(found, 19U) << (is_planned_for_gpu ? "of a GPU's kernels" : "of the device's kernels");
     }
-    EXPECT_GE(found, 19U);
 }
 
 // What is allowed follows from what may be rounded: little where floats are all there is, as much as the picture

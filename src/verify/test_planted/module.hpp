@@ -3,6 +3,8 @@
 // For tests only: a SPIR-V module as a list of instructions that can be changed, and mistakes of a compiler that are
 // planted into one. Not part of the library.
 
+#include <vulkan/vulkan.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -50,6 +52,7 @@ struct Mistake {
     const char* effect;  ///< whose kernels it is planted into
     /// Changes the module, and says whether there was a place for it.
     bool (*plant)(Module& module);
+    VkExtent2D extent{67, 41};  ///< of the picture that shows it
 };
 
 /// Twenty, each of another kind.
