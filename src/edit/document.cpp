@@ -114,7 +114,6 @@ void LookDocument::redo() {
     redo_.pop_back();
     keep_effects(step.look, look_);
     remember(std::move(step.what));
-    merge_.clear();
     take(std::move(step.look));
 }
 
