@@ -178,17 +178,17 @@ position = [2, 0, 0]
 // has gone aside by 10 cm, or its lens was shifted, or its jitter was another.
 TEST_F(CliHistory, ThePreviousCameraOfAFileIsItsMotion) {
     if (find_effect("motion_blur") == nullptr) GTEST_SKIP() << "this build has no effect motion_blur";
-    constexpr std::uint32_t width = 48, height = 200;
+    constexpr std::uint32_t columns = 48, rows = 200;
     write("smear.toml",
           "[[stack]]\neffect = \"motion_blur\"\nshutter_angle = 360\nsamples = 32\nresolution = \"full\"\n");
     FrameFile made;
-    made.color = Picture(width, height);
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) std::fill_n(made.color.at(x, y), 4, x % 2 == 0 ? 1.0F : 0.0F);
-    made.depth = Plane<1>(width, height);
+    made.color = Picture(columns, rows);
+    for (std::uint32_t y = 0; y < rows; ++y)
+        for (std::uint32_t x = 0; x < columns; ++x) std::fill_n(made.color.at(x, y), 4, x % 2 == 0 ? 1.0F : 0.0F);
+    made.depth = Plane<1>(columns, rows);
     std::ranges::fill(made.depth->values, 5.0F);
     made.camera.world_to_camera = Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    const Matrix lens = perspective(50, double{width} / height);
+    const Matrix lens = perspective(50, double{columns} / rows);
     made.camera.projection = lens;
     const std::array<float, 2> shift{4.3F, 0};
     const FrameCamera still = made.camera;
@@ -196,7 +196,7 @@ TEST_F(CliHistory, ThePreviousCameraOfAFileIsItsMotion) {
         made.camera = still;
         if (moved == "view")
             made.camera.previous_world_to_camera = Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.1F, 0, 0, 1};
-        if (moved == "projection") made.camera.previous_projection = jittered(lens, shift, {width, height});
+        if (moved == "projection") made.camera.previous_projection = jittered(lens, shift, {columns, rows});
         if (moved == "jitter") made.camera.previous_jitter = shift;
         const bool has_moved = !moved.empty();
         ASSERT_TRUE(write_frame(path("walk.exr"), made));
@@ -206,8 +206,8 @@ TEST_F(CliHistory, ThePreviousCameraOfAFileIsItsMotion) {
             "");
         const Picture out = frame("out.exr").color;
         ASSERT_EQ(out.pixels.size(), made.color.pixels.size());
-        for (std::uint32_t y = 0; y < height; ++y)
-            for (std::uint32_t x = 4; x < width - 4; ++x)
+        for (std::uint32_t y = 0; y < rows; ++y)
+            for (std::uint32_t x = 4; x < columns - 4; ++x)
                 ASSERT_NEAR(out.at(x, y)[1], has_moved ? 0.5F : made.color.at(x, y)[1], has_moved ? 0.25F : 0.0F)
                     << moved << " at " << x << ", " << y;
     }

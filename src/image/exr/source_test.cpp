@@ -15,10 +15,12 @@
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 #include <random>
 
 #include "core/files.hpp"
+#include "image/exr/check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
 #include "image/test_files.hpp"
@@ -138,6 +140,31 @@ TEST_F(ImageExrSource, DamagedZipIsAnErrorWithItsChunk) {
     const auto frame = read_frame(file("a.exr"));
     ASSERT_FALSE(frame);
     EXPECT_NE(frame.error().text.find("chunk 3 cannot be unpacked"), std::string::npos) << frame.error().text;
+}
+
+TEST_F(ImageExrSource, WindowsThatAreEmptyOrTooLargeAreRefused) {
+    const std::vector<Stored> channels{{"R", Imf::HALF, numbers(4, 4, 1)}};
+    store(Imf::Header(4, 4), channels);
+    const std::string intact = content(file("a.exr"));
+    struct Case {
+        std::array<std::int32_t, 4> window;  ///< left, top, right, bottom: the last pixels
+        std::string error;
+    };
+    for (const Case& tried :
+         {Case{{0, 0, -1, 3}, "is empty"}, Case{{0, 0, 3, -1}, "is empty"}, Case{{0, 0, -9, -9}, "is empty"},
+          Case{{0, 0, 65536, 3}, "at most 65536 a side"}, Case{{0, 0, 3, 65536}, "at most 65536 a side"},
+          Case{{1 << 30, 0, (1 << 30) + 1, 3}, "coordinates in"},
+          Case{{0, -(1 << 30) - 1, 3, -(1 << 30)}, "coordinates in"}})
+        for (const std::string name : {"dataWindow", "displayWindow"}) {
+            std::string bytes = intact;
+            const std::string head = name + std::string("\0box2i\0\x10\0\0\0", 11);
+            const std::size_t at = bytes.find(head);
+            ASSERT_NE(at, std::string::npos);
+            std::memcpy(&bytes[at + head.size()], tried.window.data(), sizeof(tried.window));
+            const auto checked = check_exr(std::as_bytes(std::span(bytes)));
+            ASSERT_FALSE(checked) << name << tried.error;
+            EXPECT_NE(checked.error().text.find(tried.error), std::string::npos) << checked.error().text;
+        }
 }
 
 TEST_F(ImageExrSource, LuminanceAndChromaAreColor) {
