@@ -32,6 +32,7 @@ TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
         const pid_t child = ::fork();
         if (child == 0) {
             ::dup2(ends[1], STDOUT_FILENO);
+            std::signal(signal, SIG_DFL);  // a shell ignores SIGINT in what it starts in the background
             ::execl(program.c_str(), program.c_str(), "develop", in.c_str(), "-o", "-", "--format", "rgb24", nullptr);
             ::_exit(127);
         }

@@ -92,6 +92,8 @@ TEST_F(ImageFiles, ASignalLeavesNoTemporaryFile) {
     for (int attempt = 0; attempt < 20; ++attempt) {
         const pid_t child = ::fork();
         if (child == 0) {
+            // A shell ignores SIGINT in what it starts in the background.
+            for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
             AtomicPath::remove_on_signals();
             std::vector<std::jthread> threads;
             for (int thread = 0; thread < 4; ++thread)
