@@ -48,5 +48,16 @@ TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
     for (const int end : ends) ::close(end);
 }
 
+// A batch system's limit: the signal would end the program, and leave what it had begun.
+TEST_F(CliSignal, AFileThatIsTooLargeIsAnErrorAndLeavesNothing) {
+    FrameFile frame;
+    frame.color = Picture(512, 512);
+    ASSERT_TRUE(write_frame(path("in.exr"), frame));
+    const Outcome outcome = run_lines("ulimit -f 64\ndarkroom develop in.exr -o out.exr --compression none");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "darkroom: out.exr: cannot write: File too large\n");
+    EXPECT_EQ(files(), std::vector<std::string>{"in.exr"});
+}
+
 }  // namespace
 }  // namespace darkroom::test

@@ -36,6 +36,7 @@ int run(int argc, char** argv, const AddCommands& add_commands) {
 
 int run_program(int argc, char** argv, const AddCommands& add_commands) {
     darkroom::AtomicPath::remove_on_signals();
+    survive_size_limits();
     // Exceptions come from third parties and from the allocator alone.
     try {
         return end_output(run(argc, argv, add_commands));

@@ -69,6 +69,8 @@ void tell(std::string_view line) {
 
 void survive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
+void survive_size_limits() { std::signal(SIGXFSZ, SIG_IGN); }
+
 int end_output(int code) {
     errno = 0;
     if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;

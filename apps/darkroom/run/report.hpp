@@ -31,6 +31,8 @@ void answer_unless_quiet(std::string_view line);
 void tell(std::string_view line);
 /// For work whose lines are told by the way: that nobody reads them does not end it.
 void survive_closed_pipes();
+/// A file beyond the limit of the shell or of a batch system (`ulimit -f`) is an error of writing it, not the end.
+void survive_size_limits();
 /// The exit code `code`; where standard output could not be written (a full disk), a line says so and it is another.
 [[nodiscard]] int end_output(int code);
 /// "darkroom: <text>" on one line of standard error, where that was asked for.
