@@ -70,6 +70,14 @@ TEST_F(CliFlags, AnEmptyTextIsNoValue) {
     expect_refused(command("develop", {"--exposure", ""}), 1, "--exposure: '' is not a number, allowed is");
 }
 
+TEST_F(CliFlags, WhatStandsTwiceOrIsNoSwitchIsTold) {
+    for (const std::string flag : {"--output", "--size", "--device"})
+        expect_refused(
+            command("render", {flag, "8x8", flag, "9x9", flag, "7x7"}), 1,
+            fmt::format("darkroom: {}: stands {} times, once is allowed\n", flag, flag == "--output" ? 4 : 3));
+    expect_refused(command("develop", {"--strict=maybe"}), 1, "darkroom: --strict = maybe: allowed is true or false\n");
+}
+
 // Without the program: a process takes longer than all of them.
 class NumberFlagTest : public testing::Test {
   protected:

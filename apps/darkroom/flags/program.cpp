@@ -75,6 +75,16 @@ darkroom::Failure value_needed(std::string_view flag) {
     return user_error(fmt::format("{}: one value is needed", printable(flag)));
 }
 
+// "--size: At Most 1 required but received 2": it stands twice.
+darkroom::Failure mismatch(std::string_view text) {
+    constexpr std::string_view too_often = ": At Most 1 required but received ";
+    const std::string_view flag = text.substr(0, text.find(':'));
+    const std::size_t found = text.find(too_often);
+    if (found == std::string_view::npos) return value_needed(flag);
+    return user_error(
+        fmt::format("{}: stands {} times, once is allowed", printable(flag), text.substr(found + too_often.size())));
+}
+
 std::string missing(const CLI::App& program, const char* text) {
     for (const CLI::App* const command : program.get_subcommands())
         if (command->get_require_subcommand_min() > 0 && command->get_subcommands().empty())
@@ -111,8 +121,12 @@ Result<std::optional<int>> Program::parse(std::span<char* const> arguments) cons
     } catch (const CLI::ExtrasError&) {
         return user_error(unknown_argument(*parser_));
     } catch (const CLI::ArgumentMismatch& error) {
+        return mismatch(error.what());
+    } catch (const CLI::ConversionError& error) {  // "Could not convert: --strict = maybe": of switches alone
         const std::string text = error.what();
-        return value_needed(text.substr(0, text.find(':')));
+        const std::size_t end = text.find(": ");
+        return user_error(fmt::format("{}: allowed is true or false",
+                                      printable(end == std::string::npos ? text : text.substr(end + 2))));
     } catch (const CLI::RequiredError& error) {
         return user_error(missing(*parser_, error.what()));
     } catch (const CLI::ParseError& error) {
