@@ -100,6 +100,11 @@ TEST_F(CliBake, RefusesWhatItCannotBake) {
     expect_refused({"bake", path("grey.toml"), "-o", path("out.dkb"), "--profile", "cpu"}, 1,
                    "--profile cpu: allowed is gpu or software");
     expect_refused({"bake", path("none.toml"), "-o", path("out.dkb"), "--profile", "gpu"}, 1, "none.toml");
+    expect_refused({"bake", path(""), "-o", path("grey.toml"), "--profile", "gpu"}, 1,
+                   "grey.toml: is also an input, and would be overwritten");
+    expect_refused(
+        {"bake", path("grey.toml"), "--layer", path("dark.toml"), "-o", path("dark.toml"), "--profile", "gpu"}, 1,
+        "dark.toml: is also an input, and would be overwritten");
     expect_refused(bake({"--depth-format", "D32"}), 1, "--depth-format D32: not a format of images");
     expect_refused(bake({"--target-format", ":storage"}), 1, "--target-format :storage");
     expect_refused(bake({"--output-space", "pq", "--target-format", "R32G32B32A32_SFLOAT"}), 1,

@@ -182,6 +182,8 @@ TEST_F(CliCompare, WhatCannotBeComparedIsNoDifference) {
                    "--fail-flip");
     expect_refused({"compare", path("a.exr"), path("a.exr"), "--layers", "color,"}, 1, "a name is empty");
     expect_refused({"compare", path("a.exr"), path("a.exr"), "--diff", path("a.exr")}, 1, "would be overwritten");
+    expect_refused({"compare", path("a.exr"), path("a.exr"), "--diff", path("d.png"), "--sheet", path("./d.png")}, 1,
+                   "d.png: --diff and --sheet name the same file");
 }
 
 class CliCompareMany : public CliCompare {

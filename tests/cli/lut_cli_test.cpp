@@ -12,6 +12,7 @@
 namespace darkroom {
 namespace {
 
+using test::content;
 using test::Outcome;
 
 class CliLut : public test::CliFixture {
@@ -45,6 +46,29 @@ class CliLut : public test::CliFixture {
         return worst;
     }
 };
+
+TEST_F(CliLut, WhatIsReadIsNotOverwritten) {
+    Picture table(64, 64);  // a HaldCLUT, which is a mask, too
+    for (std::size_t i = 0; i < table.pixels.size(); ++i)
+        table.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>(i % 32) / 31;
+    ASSERT_TRUE(write_picture(path("table.png"), table));
+    write("table.toml", "[post_process]\nlut = \"table.png\"\n");
+    write("only.toml", "[[stack]]\neffect = \"lut\"\nlut = \"half.cube\"\n");
+    write("mask.toml", "[[stack]]\neffect = \"lut\"\nlut = \"half.cube\"\nmask = \"table.png\"\n");
+    const std::string png = path("table.png"), cube = path("half.cube"), frame = path("frame.exr");
+    const std::string before = content(png), half = content(cube);
+    const std::string as_png = "table.png: is also an input, and would be overwritten";
+    const std::string as_cube = "half.cube: is also an input, and would be overwritten";
+    expect_refused({"develop", frame, "--lut", png, "-o", png}, 1, as_png);
+    expect_refused({"develop", frame, "--look", path("table.toml"), "-o", png}, 1, as_png);
+    expect_refused({"develop", frame, "--look", path("mask.toml"), "-o", png}, 1, as_png);
+    expect_refused({"develop", frame, "--layer", path("table.toml"), "-o", png}, 1, as_png);
+    expect_refused({"lut", "convert", cube, "-o", cube}, 1, as_cube);
+    expect_refused({"lut", "export", path("only.toml"), "-o", cube}, 1, as_cube);
+    expect_refused({"lut", "export", "--lut", cube, "-o", cube}, 1, as_cube);
+    EXPECT_EQ(content(png), before);
+    EXPECT_EQ(content(cube), half);
+}
 
 // Half the code is what half of a table says: 188 becomes 94.
 TEST_F(CliLut, TheFlagLooksColoursUp) {

@@ -141,7 +141,9 @@ Result<> bake(Options& options) {
     const Result<std::vector<std::string>> looks = look_files(options.looks);
     if (!looks) return failure(looks.error());
     const MissingFolders folders = options.makes_folder ? MissingFolders::Made : MissingFolders::Told;
-    if (Result<> done = check_folder(std::filesystem::path(options.out).parent_path(), folders); !done) return done;
+    std::vector<std::filesystem::path> inputs = options.look.input_files();
+    inputs.insert(inputs.end(), looks->begin(), looks->end());
+    if (Result<> done = check_output(options.out, FileSet(inputs), folders); !done) return done;
     Result<darkroom::CompileDesc> desc = desc_of(options);
     if (!desc) return failure(std::move(desc));
     darkroom::KernelFile file;

@@ -186,6 +186,9 @@ int run(const Options& options) {
         if (const Result<> done = check_page_name(options.html); !done) return fail(done.error());
     for (const std::string& path : {options.diff, options.sheet})
         if (const Result<> done = check_picture(path); !done) return fail(done.error());
+    const auto place = [](const std::string& path) { return std::filesystem::absolute(path).lexically_normal(); };
+    if (!options.diff.empty() && !options.sheet.empty() && place(options.diff) == place(options.sheet))
+        return fail_user(fmt::format("{}: --diff and --sheet name the same file", printable(options.sheet)));
     for (const std::string& path : {options.diff, options.sheet, options.html})
         if (const Result<> done = check_written(path, *pairs, options.makes_folders); !done) return fail(done.error());
     return pairs->is_single ? compare_one(pairs->pairs.front(), *request, options)

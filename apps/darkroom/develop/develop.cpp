@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -97,9 +98,11 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const std::vector<darkroom::NumberedFile>& inputs = job.inputs;
     const auto is_in_range = [&](long long number) { return job.is_asked_for(number); };
     using Paths = std::vector<std::filesystem::path>;
+    Paths also_read = options.look.input_files();
+    std::ranges::move(ui_files(job.look), std::back_inserter(also_read));
     const Result<Paths> outputs =
         job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
-                   : output_paths(inputs, job.out, ui_files(job.look), is_in_range, options.run.missing_folders());
+                   : output_paths(inputs, job.out, also_read, is_in_range, options.run.missing_folders());
     if (!outputs) return failure(outputs.error());
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
@@ -370,6 +373,10 @@ class Develop {
         }
         item.extent = item.picture.extent;
         item.lights = {};
+        // A stack may make a picture of another size, which has no such window.
+        const bool has_frames_size =
+            item.extent.width == item.input.extent.width && item.extent.height == item.input.extent.height;
+        if (!has_frames_size) item.frame.display.reset();
         item.frame = {.display = item.frame.display, .attributes = std::move(item.frame.attributes)};
         return {};
     }

@@ -227,7 +227,8 @@ Result<> LookFlags::lay_layers(Look& look) const {
 }
 
 std::vector<std::filesystem::path> LookFlags::input_files() const {
-    std::vector<std::filesystem::path> files(layers_.begin(), layers_.end());
+    std::vector<std::filesystem::path> files = read_->all();
+    files.insert(files.end(), layers_.begin(), layers_.end());
     for (const std::string& one : {file, events})
         if (!one.empty()) files.emplace_back(one);
     return files;
@@ -253,7 +254,10 @@ darkroom::LookOptions LookFlags::options(std::vector<std::string>* warnings) con
             .warnings = warnings,
             .is_scene = file.empty() || is_scene_name(file),
             .allows_custom_effects = !has_no_custom_effects_,
-            .load_resource = darkroom::load_resource_file};
+            .load_resource = [read = read_](const std::filesystem::path& path, darkroom::FileUse use) {
+                read->add(path);
+                return darkroom::load_resource_file(path, use);
+            }};
 }
 
 bool LookFlags::change_anything() const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/run/read_files.hpp"
 #include "flags.hpp"
 #include "looks/look_parts.hpp"
 
@@ -37,7 +38,7 @@ class LookFlags {
     /// place where it is asked for. --ui becomes the interface's document as it was typed.
     [[nodiscard]] darkroom::Result<> change(darkroom::Look& look, bool keeps_what_is_off) const;
     [[nodiscard]] bool change_anything() const;
-    /// What they read: the look, its layers, the timeline.
+    /// What they read: the look, its layers, the timeline, and the tables and pictures of looks that were read so far.
     [[nodiscard]] std::vector<std::filesystem::path> input_files() const;
     [[nodiscard]] const std::string& ui_file() const { return ui_file_; }
     /// --no-postprocess. look() is then switched off.
@@ -73,8 +74,9 @@ class LookFlags {
 
     std::string order_, ui_file_;
     std::vector<std::string> layers_, sets_, effect_files_, game_;
-    std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
-    std::optional<CommandFlags> command_;         // knows in which order they were typed
+    std::vector<std::unique_ptr<Value>> values_;                       // CLI11 keeps references to the texts
+    std::shared_ptr<ReadFiles> read_ = std::make_shared<ReadFiles>();  ///< by the looks that options() are for
+    std::optional<CommandFlags> command_;                              // knows in which order they were typed
     bool is_strict_ = false;
     bool has_no_custom_effects_ = false;
     bool is_off_ = false;

@@ -27,11 +27,11 @@ struct Output {
     bool makes_folder = false;
 };
 
-Result<> check(const Output& to) {
+Result<> check(const Output& to, const std::vector<std::filesystem::path>& inputs) {
     const std::filesystem::path path = to.path;
     if (path.extension() != ".cube")
         return user_error(fmt::format("-o {}: tables are written as .cube", printable(to.path)));
-    return check_folder(path.parent_path(), to.makes_folder ? MissingFolders::Made : MissingFolders::Told);
+    return check_output(path, FileSet(inputs), to.makes_folder ? MissingFolders::Made : MissingFolders::Told);
 }
 
 Result<> write(const std::string& path, const darkroom::TableFile& file) {
@@ -49,7 +49,7 @@ CommandFlags add(CommandFlags lut, const char* name, const char* help, Output& o
 }
 
 Result<> convert(const std::string& from, const Output& to) {
-    if (Result<> done = check(to); !done) return done;
+    if (Result<> done = check(to, {from}); !done) return done;
     Result<darkroom::FoundTable> found = darkroom::read_table_file(from);
     if (!found) return failure(std::move(found));
     darkroom::TableFile& file = found->file;
@@ -76,9 +76,9 @@ Command add_convert(CommandFlags lut) {
 }
 
 Result<> export_to(const Output& to, const LookFlags& flags) {
-    if (Result<> done = check(to); !done) return done;
     const Result<darkroom::Look> look = flags.look();
     if (!look) return failure(look.error());
+    if (Result<> done = check(to, flags.input_files()); !done) return done;
     const Result<ExportedLook> exported = export_look(*look);
     if (!exported) return failure(exported.error());
     for (const std::string& line : exported->left_out) warn(fmt::format("left out: {}", line));
