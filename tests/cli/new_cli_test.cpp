@@ -65,6 +65,17 @@ TEST_F(CliNew, ASceneIsRenderedStrictly) {
     EXPECT_GT(most, 0.9f) << "something is lit";
 }
 
+// The line is one that a shell takes.
+TEST_F(CliNew, TheNextCommandIsQuoted) {
+    const auto told = [&](const std::string& name) { return run({"new", "scene", path(name)}).told; };
+    EXPECT_NE(told("room").find("darkroom render " + path("room.scene.toml") + " -o"), std::string::npos);
+    EXPECT_NE(told("my room's")
+                  .find(fmt::format("darkroom render '{}/my room'\\''s.scene.toml' -o",
+                                    fs::path(path("x")).parent_path().string())),
+              std::string::npos)
+        << told("other room");
+}
+
 TEST_F(CliNew, NothingIsOverwrittenUnasked) {
     expect_clean("darkroom new look evening");
     write("evening.toml", "mine");
@@ -73,9 +84,9 @@ TEST_F(CliNew, NothingIsOverwrittenUnasked) {
     expect_clean("darkroom new look evening.toml --force");
     EXPECT_NE(content(path("evening.toml")), "mine");
     expect_refused({"new", "effect", path("bloom")}, 1, "new effect bloom: an effect of this name is built in");
-    for (const char* const name : {"Bad", "a-b", "1st", "a b"})
+    for (const char* const name : {"Bad", "a-b", "1st", "a b", "main", "float"})
         expect_refused({"new", "effect", path(name)}, 1, std::string("new effect ") + name + ": a name is of");
-    expect_refused({"new", "scene", path("none/room")}, 2, "none");
+    expect_refused({"new", "scene", path("none/room")}, 1, "none: no such folder, nothing can be written there");
     expect_refused({"new", "picture", "x"}, 1, "new picture: allowed is effect, look or scene");
     expect_refused({"new", "look"}, 1, "NAME");
 }

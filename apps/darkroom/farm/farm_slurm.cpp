@@ -13,6 +13,7 @@
 #include "apps/darkroom/flags/number_flag.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "apps/darkroom/run/shell_text.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
@@ -39,27 +40,6 @@ struct SlurmOptions {
     std::string partition, time, gpus, account, program;
     bool is_dry_run = false;
 };
-
-std::string shell_quoted(const std::string& text) {
-    const auto is_plain = [](unsigned char c) {
-        return std::isalnum(c) != 0 ||
-               std::string_view("_./:=,+-@").find(static_cast<char>(c)) != std::string_view::npos;
-    };
-    if (!text.empty() && std::ranges::all_of(text, is_plain)) return text;
-    std::string out = "'";
-    for (const char c : text)
-        if (c == '\'')
-            out += "'\\''";
-        else
-            out += c;
-    return out + "'";
-}
-
-std::string shell_quoted(const std::vector<std::string>& words) {
-    std::string out;
-    for (const std::string& word : words) out += (out.empty() ? "" : " ") + shell_quoted(word);
-    return out;
-}
 
 /// Of at most `size` frames each that follow one another in the sequence, as --frames has them. Between those that are
 /// missing there may be some that are there, which tasks pass over.

@@ -11,7 +11,9 @@
 #include <span>
 
 #include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "apps/darkroom/run/shell_text.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 
@@ -146,8 +148,8 @@ Result<> check_effect(const std::string& name, const std::string& text) {
     const Result<darkroom::CustomEffect> effect = darkroom::CustomEffect::parse(text, name);
     if (effect) return {};
     return user_error(
-        fmt::format("new effect {}: a name is of lower-case letters, digits and single underscores, and "
-                    "begins with a letter",
+        fmt::format("new effect {}: a name is of lower-case letters, digits and single underscores, begins with a "
+                    "letter, and is no name of GLSL",
                     printable(name)));
 }
 
@@ -166,11 +168,13 @@ Result<> make(const Options& options) {
     replace_all(text, "STRUCT", pascal(name));
     if (kind->name == "effect")
         if (Result<> done = check_effect(name, text); !done) return done;
+    if (Result<> done = check_folder(std::filesystem::path(file).parent_path(), MissingFolders::Refused); !done)
+        return done;
     std::error_code error;
     if (std::filesystem::exists(file, error) && !options.is_forced)
         return user_error(fmt::format("{}: exists already; --force replaces it", printable(file)));
     if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(text))); !done) return done;
-    tell(fmt::format("{}: {}", printable(file), fmt::format(fmt::runtime(kind->next), printable(file))));
+    tell(fmt::format("{}: {}", printable(file), fmt::format(fmt::runtime(kind->next), shell_quoted(printable(file)))));
     return {};
 }
 
