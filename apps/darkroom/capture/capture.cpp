@@ -169,11 +169,11 @@ class Capture {
         std::error_code error;
         const fs::path parent = fs::absolute(job_.folder, error).lexically_normal().parent_path();
         const fs::space_info space = fs::space(fs::is_directory(job_.folder, error) ? job_.folder : parent, error);
-        constexpr double gigabyte = 1e9;
+        constexpr double megabyte = 1e6;
         if (!error && space.available < job_.bytes())
-            return user_error(fmt::format("{}: the capture takes up to {:.1f} GB, {:.1f} GB are free",
-                                          printable(job_.folder.string()), static_cast<double>(job_.bytes()) / gigabyte,
-                                          static_cast<double>(space.available) / gigabyte));
+            return user_error(fmt::format("{}: the capture takes up to {:.1f} MB, {:.1f} MB are free",
+                                          printable(job_.folder.string()), static_cast<double>(job_.bytes()) / megabyte,
+                                          static_cast<double>(space.available) / megabyte));
         if (Result<> done = check_folder(job_.folder, MissingFolders::Made); !done) return done;
         fs::remove(job_.folder / capture_description, error);
         if (Result<> done = check_folder(job_.folder / "truth", MissingFolders::Made); !done) return done;
