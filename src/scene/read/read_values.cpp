@@ -123,7 +123,9 @@ bool TableReader::count(std::string_view key, std::uint32_t& out, std::uint32_t 
     const Value* const value = take(key);
     if (value == nullptr) return false;
     const Interval allowed{.low = static_cast<double>(low), .high = static_cast<double>(high)};
-    const std::optional<double> number = number_of(*value->node, value->place, key, allowed, fmt::format("{}", out));
+    // What is below all that is allowed stands for nothing said.
+    const std::string used_text = out < low ? "the default" : fmt::format("{}", out);
+    const std::optional<double> number = number_of(*value->node, value->place, key, allowed, used_text);
     if (!number) return false;
     if (std::floor(*number) != *number) {
         wrong_kind(key, *value, fmt::format("a whole number, allowed is {}", show(allowed)));

@@ -81,6 +81,8 @@ TEST(SceneError, OutOfRangeIsAWarningWithTheValueUsed) {
     EXPECT_EQ(warning_of("[camera]\nfov = 180\n"),
               "a.toml:2:7: camera.fov = 180: allowed is (0, 180) degrees; 45 is used");
     EXPECT_EQ(scene_despite("[camera]\nfov = 180\n").camera.field_of_view, 45);
+    EXPECT_EQ(warning_of("[scene]\nsamples = 0\n"),
+              "a.toml:2:11: scene.samples = 0: allowed is [1, 1024]; the default is used");
     EXPECT_EQ(warning_of("[camera]\naperture = 0.4\n"),
               "a.toml:2:12: camera.aperture = 0.4: allowed is [0.5, 64]; the default is used");
     EXPECT_EQ(warning_of("[camera]\nfocus = 0\n"),
