@@ -8,6 +8,9 @@
 #include <charconv>
 #include <cstring>
 
+#include "decoders/exif.hpp"
+#include "image/webp/check.hpp"
+
 namespace darkroom {
 namespace {
 
@@ -146,6 +149,10 @@ Result<int> orientation_of_radiance(std::span<const std::byte> bytes, const File
 Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, const PictureSource& source) {
     if (kind == FileKind::OpenExr) return 1;
     if (kind == FileKind::Radiance) return orientation_of_radiance(bytes, source.parts()[0]);
+    if (kind == FileKind::WebP) {
+        const Result<WebpPicture> picture = check_webp(bytes);
+        return picture ? orientation_of_exif(picture->exif) : 1;
+    }
     // Another number than these stands in files, and is taken as upright by all who show them.
     const std::vector<double> found = source.numbers(0, "Orientation");
     return found.size() == 1 && found[0] >= 1 && found[0] <= 8 ? static_cast<int>(found[0]) : 1;

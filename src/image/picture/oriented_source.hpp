@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Pictures that are stored lying or mirrored, and shown upright: JPEG and TIFF by the orientation of EXIF, Radiance HDR
-// by the order of its axes. What is read from here on is upright. Textures of models are taken as they are stored, as
-// their format wants it, and come past this.
+// Pictures that are stored lying or mirrored, and shown upright: JPEG, TIFF and WebP by the orientation of EXIF,
+// Radiance HDR by the order of its axes. What is read from here on is upright. Textures of models are taken as they are
+// stored, as their format wants it, and come past this.
 
 #include "image/picture/picture_source.hpp"
 

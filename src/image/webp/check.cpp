@@ -44,8 +44,15 @@ std::optional<Extent> extent_of_lossless(Bytes data) {
 
 struct Found {
     std::optional<Extent> canvas, picture;
-    Bytes profile;
+    Bytes profile, exif;
 };
+
+// Some writers leave the head that EXIF has in JPEG.
+Bytes without_head(Bytes exif) {
+    constexpr std::string_view head("Exif\0\0", 6);
+    const std::string_view text(reinterpret_cast<const char*>(exif.data()), exif.size());
+    return text.starts_with(head) ? exif.subspan(head.size()) : exif;
+}
 
 Result<> look_at(std::string_view name, Bytes data, Found& found) {
     if (name == "VP8X") {
@@ -57,6 +64,8 @@ Result<> look_at(std::string_view name, Bytes data, Found& found) {
         return user_error("is animated, which is not read");
     } else if (name == "ICCP" && found.profile.empty()) {
         found.profile = data;
+    } else if (name == "EXIF" && found.exif.empty()) {
+        found.exif = without_head(data);
     } else if (name == "VP8 " || name == "VP8L") {
         if (found.picture) return user_error("has more than one picture");
         found.picture = name == "VP8 " ? extent_of_lossy(data) : extent_of_lossless(data);
@@ -93,7 +102,7 @@ Result<WebpPicture> check_webp(Bytes file) {
                                       found.canvas->width, found.canvas->height));
     if (auto checked = check_decoded_size(std::uint64_t{4} * extent.width * extent.height, file.size()); !checked)
         return failure(std::move(checked));
-    return WebpPicture{extent.width, extent.height, file, found.profile};
+    return WebpPicture{extent.width, extent.height, file, found.profile, found.exif};
 }
 
 }  // namespace darkroom

@@ -13,6 +13,7 @@ struct WebpPicture {
     std::uint32_t width = 0, height = 0;
     std::span<const std::byte> file;     ///< without what stands behind the last chunk
     std::span<const std::byte> profile;  ///< of its colours, empty: none
+    std::span<const std::byte> exif;     ///< a TIFF file, empty: none
 };
 
 /// An error names no file. Refused: what is cut off, is animated, has no picture or one of another size than its

@@ -144,6 +144,29 @@ TEST_F(ImageWebpFile, IsAFrameOfItsPicture) {
     EXPECT_NEAR(frame->color.pixels[2], std::pow((40 / 255.0 + 0.055) / 1.055, 2.4), 1e-5);
 }
 
+// EXIF 2.32, 4.6.4: at 6 the first row of the file is the right edge of what is shown.
+TEST_F(ImageWebpFile, ItIsShownUpright) {
+    const std::string picture = webp_file(Packing::Lossless).substr(12);
+    const std::string extended = chunk_of("VP8X", std::string("\x18\0\0\0\x13\0\0\x09\0\0", 10)) + picture;
+    const std::string exif("II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0\6\0\0\0\0\0\0\0", 26);
+    for (const std::string& head : {std::string(), std::string("Exif\0\0", 6)}) {
+        put(file("turned"), riff(extended + chunk_of("EXIF", head + exif)));
+        const auto frame = read_frame(file("turned"));
+        ASSERT_TRUE(frame) << frame.error().text;
+        ASSERT_EQ(frame->color.width, 10U);
+        ASSERT_EQ(frame->color.height, 20U);
+        const float* const corner = frame->color.pixels.data() + 9 * 4;
+        EXPECT_EQ(corner[0], 0) << "red grows downwards";
+        EXPECT_EQ(corner[1], 0) << "green grows to the left";
+        EXPECT_GT(corner[19 * 10 * 4], 0.1);
+        EXPECT_EQ(corner[19 * 10 * 4 + 1], 0);
+    }
+    put(file("damaged"), riff(extended + chunk_of("EXIF", exif.substr(0, 20))));
+    const auto frame = read_frame(file("damaged"));
+    ASSERT_TRUE(frame) << frame.error().text;
+    EXPECT_EQ(frame->color.width, 20U);
+}
+
 TEST_F(ImageWebpFile, ItsProfileSaysWhichColorsTheyAre) {
     const std::string picture = webp_file(Packing::Lossless).substr(12);
     // A profile of no name is not read, which is told.
