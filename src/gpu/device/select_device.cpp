@@ -32,8 +32,10 @@ std::string names_of(std::span<const DeviceInfo> infos) {
 
 }  // namespace
 
+Failure no_device() { return machine_error("no Vulkan device: the loader found no driver", ErrorCode::Unsupported); }
+
 Result<std::size_t> select_device(std::span<const DeviceInfo> infos, const std::string& select) {
-    if (infos.empty()) return machine_error("no Vulkan device: the loader found no driver", ErrorCode::Unsupported);
+    if (infos.empty()) return no_device();
     const std::optional<std::uint32_t> index = as_index(select);
     const auto place = [&](auto found) { return static_cast<std::size_t>(found - infos.begin()); };
     if (index) {
