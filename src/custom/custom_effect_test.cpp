@@ -175,6 +175,36 @@ TEST(CustomEffect, HostileTextIsRefusedOrReadAndNeverTrusted) {
     }
 }
 
+// Of one stage alone: such a file would work on one device and not on another.
+TEST(CustomEffect, WhatOneStageHasAloneIsRefused) {
+    const auto of = [](const std::string& statement) {
+        return error_of("// @effect mine: Mine.\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n    " +
+                        statement + "\n    return color;\n}\n");
+    };
+    EXPECT_EQ(of("// discard, barrier()"), "");
+    for (const std::string word : {"discard", "dFdx", "fwidth", "gl_FragCoord"})
+        EXPECT_EQ(of("color.r += float(" + word + ");"),
+                  "my.glsl:3: " + word + ": GLSL has it in fragment shaders alone, and this code may run in others");
+    for (const std::string word : {"barrier", "gl_GlobalInvocationID"})
+        EXPECT_EQ(of("color.r += float(" + word + ");"),
+                  "my.glsl:3: " + word +
+                      ": GLSL has it in compute shaders alone; allowed is it in the function of a `@compute`");
+    const std::string pass =
+        "// @effect mine: Mine.\n// @buffer counts: 64 uint\n// @value most: 1\n"
+        "// @compute count 64x1 1x1: -> counts\n"
+        "void mine_count(Mine parameters) { counts[gl_GlobalInvocationID.x] = 0u; }\n"
+        "// @compute tell 1x1 1x1: counts -> most\n"
+        "void mine_tell(Mine parameters) { most[0] = float(counts[0]); }\n"
+        "// @end most\n"
+        "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return color * most[0]; }\n";
+    EXPECT_EQ(error_of(pass), "");
+}
+
+TEST(CustomEffect, AMarkOfUtf8BeforeTheTextIsNoCode) {
+    EXPECT_EQ(error_of("\xef\xbb\xbf" + std::string(duotone)), "");
+    EXPECT_EQ(error_of("\xef\xbb\xbf// @effect Mine: Mine.\n").substr(0, 10), "my.glsl:1:");
+}
+
 TEST(CustomEffect, AFileIsNamedInItsErrors) {
     const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "darkroom_custom_effect";
     std::filesystem::create_directories(folder);

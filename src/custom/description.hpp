@@ -116,6 +116,8 @@ struct Halves {
 /// What holds of the whole once every line was read.
 [[nodiscard]] Result<> check_passes(Description& out);
 
+/// The code asks for nothing that GLSL has in the other stage alone. `line` is where an error is.
+[[nodiscard]] Result<> check_stage(std::string_view code, bool is_compute, std::size_t& line);
 /// Adds the images of the frame that `code`, the function's own, names, and says which images are loaded alone.
 [[nodiscard]] Result<> read_uses(const Description& from, FileFunction& function, std::string_view code);
 /// The function takes the effect's parameters by their struct. `form` is how it is declared; `line` is where an error

@@ -26,6 +26,14 @@ using gpu::Token;
 /// Words with which a shader declares what it reads and writes, or how it runs.
 constexpr std::array<std::string_view, 9> refused_words{"attribute", "buffer", "layout",     "main",   "sampler2D",
                                                         "shade",     "shared", "subroutine", "uniform"};
+/// What GLSL has in shaders of one stage alone. A device runs functions in the stage that suits it.
+constexpr std::array<std::string_view, 16> fragment_words{
+    "discard",  "dFdx",          "dFdxCoarse",     "dFdxFine",      "dFdy",         "dFdyCoarse",
+    "dFdyFine", "fwidth",        "fwidthCoarse",   "fwidthFine",    "gl_FragCoord", "gl_FragDepth",
+    "gl_Layer", "gl_PointCoord", "gl_PrimitiveID", "gl_FrontFacing"};
+constexpr std::array<std::string_view, 9> compute_words{
+    "barrier",        "gl_GlobalInvocationID", "gl_LocalInvocationID", "gl_LocalInvocationIndex", "gl_NumWorkGroups",
+    "gl_WorkGroupID", "gl_WorkGroupSize",      "groupMemoryBarrier",   "memoryBarrierShared"};
 /// A value goes wherever its name stands, so it is short: text cannot grow without bound.
 constexpr std::size_t longest_value = 120;
 /// The compiler walks the tree of an expression by recursion: one of 7000 nested calls ends the process.
@@ -197,6 +205,31 @@ Result<> check_struct(std::string_view code, std::string_view function, std::str
     line = first;
     return user_error(
         fmt::format("{}: the struct of its parameters is {}: expected `{}`", function, struct_name, form));
+}
+
+Result<> check_stage(std::string_view code, bool is_compute, std::size_t& line) {
+    const auto is_one_of = [](std::span<const std::string_view> words, std::string_view word) {
+        return std::ranges::find(words, word) != words.end();
+    };
+    std::size_t at = 1;
+    gpu::GlslScanner scanner(code);
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        const bool is_word = token.kind == Token::Kind::Word;
+        if (is_word && is_one_of(fragment_words, token.text)) {
+            line = at;
+            return user_error(
+                fmt::format("{}: GLSL has it in fragment shaders alone, and this code may run in others", token.text));
+        }
+        if (is_word && !is_compute && is_one_of(compute_words, token.text)) {
+            line = at;
+            return user_error(
+                fmt::format("{}: GLSL has it in compute shaders alone; allowed is it in the function of "
+                            "a `@compute`",
+                            token.text));
+        }
+        at += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
+    }
+    return {};
 }
 
 Result<> read_uses(const Description& from, FileFunction& function, std::string_view code) {

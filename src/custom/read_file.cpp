@@ -121,10 +121,16 @@ constexpr std::string_view pass_word = "@pass", compute_word = "@compute", end_w
 /// What a comment line says; empty: the line is code, or none of ours.
 std::string_view comment_of(std::string_view line) { return line.starts_with("//") ? trimmed(line.substr(2)) : ""; }
 
+/// Some editors begin a file with the mark of UTF-8.
+std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 class FileReader {
   public:
     FileReader(Description& out, std::string_view text, std::string_view shown_name)
-        : out_(out), text_(text), shown_name_(printable(shown_name)) {
+        : out_(out), text_(without_mark(text)), shown_name_(printable(shown_name)) {
         // It stands in quotes in the text that is compiled.
         for (char& c : shown_name_)
             if (c == '"' || c == '\\') c = '_';
@@ -247,6 +253,8 @@ class FileReader {
         line_ = function.line;
         if (!plan::calls_name(code, name)) return user_error(fmt::format("no function {}: expected `{}`", name, form));
         if (auto ok = check_struct(code, name, struct_name_, form, line_); !ok) return ok;
+        if (auto ok = check_stage(code, function.is_compute, line_); !ok) return ok;
+        line_ = function.line;
         function.reads_light = out_.info.needs.contains(FrameImage::Shadows) && reads_light(code, out_.info.name);
         if (function.reads_light)
             code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,
