@@ -191,10 +191,19 @@ struct Developer::State {
         return {};
     }
 
+    /// Of the picture: as the stack makes it, whose last entry may work at another size than the frame's.
+    [[nodiscard]] VkExtent2D target_extent() const {
+        if (desc.target_extent.width != 0) return desc.target_extent;
+        const auto target = std::ranges::find_if(plan.images, [](const PlanImage& image) {
+            return image.kind == PlanImage::Kind::Host && image.name == "target";
+        });
+        return target == plan.images.end() ? compiled->max_extent : target->extent;
+    }
+
     /// Target and read-back of a picture as it was compiled.
     Result<> make_target(Slot& slot) const {
         if (slot.readback) return {};
-        const auto [width, height] = desc.target_extent.width != 0 ? desc.target_extent : compiled->max_extent;
+        const auto [width, height] = target_extent();
         auto image = gpu::Image::create(context(), {.name = "target",
                                                     .format = compiled->target.format,
                                                     .extent = {width, height, 1},

@@ -164,6 +164,29 @@ TEST(ComposeDeveloper, PicturesHaveAnExtentOfTheirOwn) {
     EXPECT_TRUE(developer.develop(composer, input));
 }
 
+// With the frame's size as its target's it would be refused.
+TEST(ComposeDeveloper, APictureIsAsLargeAsTheLastEntryMakesIt) {
+    if (find_effect("exposure") == nullptr) GTEST_SKIP() << "this build has no effect exposure";
+    const support::Pixels pixels = scene(33, 17);
+    const support::Picture color = support::upload(support::device().context(), pixels, VK_FORMAT_R16G16B16A16_SFLOAT);
+    for (const auto& [scale, extent] :
+         {std::pair(OutputScale{1, 2}, VkExtent2D{16, 8}), std::pair(OutputScale{2, 1}, VkExtent2D{66, 34})}) {
+        Composer composer(support::device(), {.frames_in_flight = 1});
+        composer.add(*find_effect("exposure"), nullptr, {.scale = scale});
+        Developer developer(support::device(), {.target = DevelopTarget::SceneLinear});
+        const Result<DevelopedPicture> of_memory =
+            developer.develop(composer, DevelopInput{.extent = {33, 17}, .color = pixels.rgba});
+        ASSERT_TRUE(of_memory) << of_memory.error().text;
+        EXPECT_EQ(of_memory->extent.width, extent.width);
+        EXPECT_EQ(of_memory->extent.height, extent.height);
+        EXPECT_EQ(of_memory->pixels.size(), std::size_t{extent.width} * extent.height * 4);
+        const Result<DevelopedPicture> of_device = developer.develop(
+            composer, DeviceFrame{.frame = {.color = reference_to(color)}, .color_usage = color.image.info.usage});
+        ASSERT_TRUE(of_device) << of_device.error().text;
+        EXPECT_EQ(of_device->pixels, of_memory->pixels);
+    }
+}
+
 TEST(ComposeDeveloper, WhatIsRecordedBeforeIsSeenAndItsErrorEndsIt) {
     Device& device = support::device();
     gpu::Context& context = device.context();
