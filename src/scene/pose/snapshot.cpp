@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "scene/pose/particles.hpp"
@@ -200,6 +204,19 @@ Box fitted_bounds(const Scene& scene, const Assets& assets, const Snapshot& now,
     return scene_bounds(start);
 }
 
+/// Places are floats: far from the origin they are so far apart that surfaces tear, and are speckled with shadows.
+void warn_of_distance(const Scene& scene, const Box& fitted, Snapshot& out) {
+    constexpr float finest = 1.0F / 1000;  // of its size, about a pixel
+    const vec3 farthest = glm::max(glm::abs(fitted.low), glm::abs(fitted.high)), size = fitted.size();
+    const float distance = std::max({farthest.x, farthest.y, farthest.z}), largest = std::max({size.x, size.y, size.z});
+    const float step = std::nextafter(distance, std::numeric_limits<float>::infinity()) - distance;
+    if (fitted.is_empty() || !(largest > 0) || step <= largest * finest) return;
+    out.warnings.push_back(fmt::format(
+        "{}: what is drawn is {:.3g} m large and lies {:.3g} m from the origin, where places are {:.2g} m apart; "
+        "move it nearer",
+        scene.file.string(), largest, distance, step));
+}
+
 }  // namespace
 
 Snapshot snapshot(const Scene& scene, const Assets& assets, const SnapshotOptions& options) {
@@ -209,6 +226,7 @@ Snapshot snapshot(const Scene& scene, const Assets& assets, const SnapshotOption
     builder.add_visible(out);
     add_lights(scene, assets, builder.worlds(), options.time, poses, out);
     const Box fitted = scene.camera.is_given ? Box{} : fitted_bounds(scene, assets, out, poses);
+    warn_of_distance(scene, fitted, out);
     add_camera(scene, assets, options, fitted, poses, out);
     builder.add_emitters(options.seed, out);
     return out;

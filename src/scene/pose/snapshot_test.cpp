@@ -328,6 +328,25 @@ TEST(SceneLights, KeepTheStrongestInOrder) {
     EXPECT_NE(found.warnings[1].find("18 point lights, of which 2 are left out"), std::string::npos);
 }
 
+TEST(SceneSnapshot, PlacesTooFarApartAreAWarning) {
+    const auto warnings_of = [](const std::string& at, const std::string& camera) {
+        const Result<Scene> scene =
+            parse_scene(fmt::format("{}[entities.box]\nbounds = {{ min = [0, 0, 0], max = [10, 10, 10] }}\n"
+                                    "transform = {{ position = [{}, 0, 0] }}\n",
+                                    camera, at),
+                        "a.toml");
+        return scene ? snapshot(*scene, {}, {}).warnings : std::vector<std::string>{scene.error().text};
+    };
+    EXPECT_EQ(warnings_of("0", ""), std::vector<std::string>());
+    EXPECT_EQ(warnings_of("100000", ""), std::vector<std::string>());
+    EXPECT_EQ(warnings_of("-4e6", ""),
+              std::vector<std::string>{
+                  "a.toml: what is drawn is 10 m large and lies 4e+06 m from the origin, where places are "
+                  "0.25 m apart; move it nearer"});
+    EXPECT_EQ(warnings_of("4e6", "[camera]\nposition = [0, 0, 5]\n"), std::vector<std::string>())
+        << "whoever gives a camera looks elsewhere";
+}
+
 TEST(SceneLights, WarningsSayWhichIsLeftOutAndWhere) {
     std::string text;
     for (int i = 0; i < 9; ++i)
