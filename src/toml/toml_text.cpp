@@ -100,6 +100,9 @@ std::string unit_hint(std::string_view text, std::size_t line) {
 Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name) {
     if (text.size() > most_toml_bytes)
         return user_error(fmt::format("{}: {} bytes, at most {} are read", shown_name, text.size(), most_toml_bytes));
+    // Such as a frame that was named where a look belongs.
+    if (text.find('\0') != std::string_view::npos)
+        return user_error(fmt::format("{}: a zero byte; allowed is TOML, text in UTF-8", shown_name));
     std::size_t line = 1, dots = 0;
     for (std::size_t start = 0; start < text.size(); ++line) {
         const std::size_t end = std::min(text.find('\n', start), text.size());

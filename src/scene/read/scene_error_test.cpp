@@ -75,6 +75,11 @@ TEST(SceneError, NoNumberIsNotANumber) {
     }
 }
 
+TEST(SceneError, WhatIsNoTextIsToldAsThat) {
+    constexpr std::string_view frame("v/1\1\2\0\0\0channels", 16);
+    EXPECT_EQ(error_of(frame), "a.toml: a zero byte; allowed is TOML, text in UTF-8");
+}
+
 TEST(SceneError, OutOfRangeIsAWarningWithTheValueUsed) {
     EXPECT_EQ(warning_of("[entities.a.material]\nroughness = 2\n"),
               "a.toml:2:13: entities.a.material.roughness = 2: allowed is [0, 1]; the default is used");
