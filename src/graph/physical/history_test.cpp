@@ -149,6 +149,27 @@ TEST_F(GraphPhysicalHistory, OneIsResetAloneTheOtherGoesOn) {
     EXPECT_EQ(frame(runner, 0, 0), 111 + 100);
 }
 
+TEST_F(GraphPhysicalHistory, EachHasTwoImagesOfItsOwn) {
+    const auto declare = [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        std::array<Version, 3> sums;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            const ImageDesc image = float_image(fmt::format("trail{}", i), Size::fraction(1U << i));
+            const Graph::History history = graph.history(image, {7, i});
+            sums[i] = graph.add({.name = fmt::format("add{}", i),
+                                 .reads = {{history.previous, Use::SampledCompute}},
+                                 .writes = {{history.current, Use::StorageWrite}}})[0];
+        }
+        PassDesc show{.name = "show", .writes = {{target, Use::StorageWrite}}};
+        for (const Version sum : sums) show.reads.push_back({sum, Use::SampledCompute});
+        graph.keep(graph.add(show)[0]);
+    };
+    const Runner runner(small_extent, 1, pool_, declare);
+    for (std::uint32_t i = 0; i < 3; ++i)
+        for (const gpu::Image& image : runner.physical.history(i)->images)
+            EXPECT_EQ(image.info.extent.width, small_extent.width >> i) << i;
+}
+
 TEST_F(GraphPhysicalHistory, OnlyAnotherPlanIsWaitedForAsAWhole) {
     static std::uint32_t memory_barriers;
     memory_barriers = 0;

@@ -202,6 +202,17 @@ TEST(SceneCamera, ABareModelBringsItsOwn) {
     EXPECT_EQ(snapshot(scene, assets, {}).camera.field_of_view, 45);
 }
 
+TEST(SceneCamera, InsideOfABareModelTheNearPlaneIsAThousandthOfIt) {
+    Scene scene;
+    scene.file = "room.glb";
+    scene.entities = {box(vec3(-1), vec3(1))};
+    const float radius = std::sqrt(3.0F);
+    EXPECT_NEAR(camera(scene, {.orbit = {.distance = 0.1F}}).near_distance, 0.001F * radius, 1e-6F);
+    const CameraState outside = camera(scene, {.orbit = {.distance = 5}});
+    EXPECT_NEAR(outside.near_distance, (5 - radius) / 2, 1e-4F);
+    EXPECT_NEAR(outside.far_distance, 2 * (5 + radius), 1e-4F);
+}
+
 TEST(SceneCamera, TellsOfNumbersThatNoViewHas) {
     Scene scene = seen_from({0, 0, 5}, {0, 0, 0});
     scene.camera.far_distance = scene.camera.near_distance;
