@@ -107,8 +107,9 @@ class Splicer {
         if (was_.is_flat && is_.order != was_.order)
             if (Result<> done = write_order(); !done) return done;
         if (Result<> done = write_table(flat_path, false); !done) return done;
-        // A table that names no order is in the documented one.
-        const bool must_say = is_.order != LookOrder::Documented && editor_.contains(flat_path);
+        // A table that names no order is in the documented one, a look without a table in the other.
+        const bool has_table = editor_.contains(flat_path), is_documented = is_.order == LookOrder::Documented;
+        const bool must_say = is_documented ? !was_.is_flat && !has_table : has_table;
         return must_say && !has_key(flat_path, "order") ? write_order() : Result<>{};
     }
 

@@ -245,6 +245,17 @@ TEST_F(Splice, AFlatTableBecomesAStackAndBack) {
     EXPECT_TRUE(says_same(read(*flat), was)) << *flat;
 }
 
+// As undo does, of a table that says nothing.
+TEST_F(Splice, AStackBecomesATableOfItsOrder) {
+    for (const std::string order : {"documented", "scene_linear"}) {
+        const Look was = read("[post_process]\norder = \"" + order + "\"\n"),
+                   is = read("[[stack]]\neffect = \"bloom\"\n");
+        const auto flat = splice_look("[[stack]]\neffect = \"bloom\"\n", is, was);
+        ASSERT_TRUE(flat) << flat.error().text;
+        EXPECT_TRUE(says_same(read(*flat), was)) << *flat;
+    }
+}
+
 TEST_F(Splice, SizesStayInPercent) {
     const auto sigma = [&](const std::string& text, float value) {
         return edited(text, [&](Look& look) { return set(look, "gaussian_blur", "sigma", {value}); });
@@ -406,9 +417,9 @@ TEST_F(Splice, RandomRestructuringOfEveryShippedFileReadsAsTheEditedLook) {
             const auto again = parse_look(*spliced, path.string(), options);
             ASSERT_TRUE(again) << again.error().text << "\n" << text << "\n=====\n" << *spliced;
             ASSERT_TRUE(reads_as(*again, document.look())) << path << "\n"
-                                                            << text << "\n=====\n"
-                                                            << *spliced << "\n=====\n"
-                                                            << write_look(document.look());
+                                                           << text << "\n=====\n"
+                                                           << *spliced << "\n=====\n"
+                                                           << write_look(document.look());
             text = *spliced;
             written = document.look();
             ++count;
