@@ -51,8 +51,9 @@ SmaaArm smaa_arm_down(ivec2 texel, ivec2 ahead, bool is_rising, int steps) {
     return SmaaArm(columns, 0.0, beyond.y ? 0.0 : 0.5);
 }
 
-// Is the pixel's top a step of a diagonal? Then `areas` are what it takes, and what is taken of it.
-bool smaa_diagonal(ivec2 texel, int steps, inout vec2 areas) {
+// Is the pixel's top a step of a diagonal, or of one that falls alone? Then `areas` are what it takes, and what is taken
+// of it.
+bool smaa_diagonal(ivec2 texel, int steps, bool has_to_fall, inout vec2 areas) {
     SmaaArm up = smaa_arm_up(texel, ivec2(1, -1), true, steps), down = smaa_arm_down(texel, ivec2(1, -1), true, steps);
     SmaaArm up_back = smaa_arm_up(texel, ivec2(-1, -1), false, steps);
     SmaaArm down_back = smaa_arm_down(texel, ivec2(-1, -1), false, steps);
@@ -62,6 +63,8 @@ bool smaa_diagonal(ivec2 texel, int steps, inout vec2 areas) {
         up = up_back;
         down = down_back;
         sides = sides_back;
+    } else if (has_to_fall) {
+        return false;
     }
     if (sides + 1.0 < smaa_least_diagonal) return false;
     vec2 ends = vec2(up.end, down.end);
@@ -69,6 +72,6 @@ bool smaa_diagonal(ivec2 texel, int steps, inout vec2 areas) {
     if (ends.x + ends.y == 1.0) ends = vec2(0.5);
     float columns = float(up.columns + down.columns), slope = (columns + ends.x + ends.y) / (columns + 1.0);
     float at = float(down.columns) * (slope - 1.0) - ends.y;
-    areas = smaa_areas(at, at + slope);
+    areas = smaa_areas(at, at + slope, 1.0 / slope);
     return true;
 }

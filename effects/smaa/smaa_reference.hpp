@@ -3,16 +3,19 @@
 // SMAA 1x in double precision (Jorge Jimenez et al., "SMAA: Enhanced Subpixel Morphological Antialiasing", 2012): edges
 // with local contrast, the lines that they stand for along rows, columns and diagonals, and what each pixel takes of
 // the one across. Areas under lines are integrated where the paper looks them up: a line at heights a and b over the
-// edge at a pixel's sides has (a+^2 - b+^2) / (2 (a - b)) of area above it.
+// edge at a pixel's sides has (a+^2 - b+^2) / (2 (a - b)) of area above it. And how long the steps before and behind
+// are tells where in a step its line lies.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <darkroom/effects/smaa.hpp>
 #include <darkroom/reference.hpp>
+#include <utility>
 #include <vector>
 
 #include "shared/finite_reference.hpp"
+#include "smaa/smaa_line_reference.hpp"
 
 namespace darkroom {
 
@@ -55,23 +58,6 @@ class SmaaReference {
     struct Weights {
         double up = 0, of_above = 0, left = 0, of_left = 0;
     };
-    struct Areas {
-        double own = 0, other = 0;
-    };
-    /// A line over a pixel's edge: its heights at both sides, toward the neighbour across.
-    struct Line {
-        double a = 0, b = 0;
-        [[nodiscard]] Areas areas() const {
-            const auto above = [](double from, double to) {
-                const double p = std::max(from, 0.0), q = std::max(to, 0.0);
-                return p * p - q * q;
-            };
-            const double change = a - b;
-            if (change == 0) return {};
-            return {above(-a, -b) / (-2 * change), above(a, b) / (2 * change)};
-        }
-    };
-
     double difference(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
         const Rgba &a = picture_.clamped(x, y), &b = picture_.clamped(i, j);
         if (smaa_.detection == SmaaDetection::Color)
@@ -114,12 +100,14 @@ class SmaaReference {
     }
 
     /// How far the line goes on to either side, how it bends there (half a pixel toward the neighbour across, or away,
-    /// or not), and whether what crosses it there goes on, which makes a corner.
+    /// or not), whether what crosses it there goes on, which makes a corner, and the length of the next step.
     struct End {
         std::int64_t distance = 0;
         double height = 0;
         bool is_corner_across = false, is_corner_own = false;
         bool crosses_both = false;
+        std::int64_t next = 4;  ///< 4: or more
+        [[nodiscard]] bool is_corner() const { return is_corner_across || is_corner_own; }
     };
     End end_of(std::int64_t x, std::int64_t y, bool is_upright, int direction) const {
         const auto at = [&](std::int64_t k, std::int64_t across) { return along(x, y, is_upright, k, across); };
@@ -136,36 +124,39 @@ class SmaaReference {
         end.height = is_own == is_across ? 0 : is_across ? 0.5 : -0.5;
         end.crosses_both = is_own && is_across;
         if (!is_own && !is_across) return end;
-        end.is_corner_own = at(crossing(), 1).left;
-        end.is_corner_across = at(crossing(), -2).left;
+        end.is_corner_own = is_own && at(crossing(), 1).left;
+        end.is_corner_across = is_across && at(crossing(), -2).left;
+        for (std::int64_t k = 1; k < 4 && end.next == 4 && !end.crosses_both; ++k)
+            if (at(crossing() + direction * k, is_across ? -2 : 1).left) end.next = k;
         return end;
     }
 
-    Areas orthogonal(std::int64_t x, std::int64_t y, bool is_upright) const {
+    SmaaAreas orthogonal(std::int64_t x, std::int64_t y, bool is_upright) const {
         End first = end_of(x, y, is_upright, -1), second = end_of(x, y, is_upright, 1);
         // Where something crosses on both sides, the line may go either way: opposite to the other end, if that bends.
         if (first.crosses_both) first.height = -second.height;
         if (second.crosses_both) second.height = -first.height;
         const double length = static_cast<double>(first.distance + second.distance + 1);
-        const double from = static_cast<double>(first.distance) / length, to = from + 1 / length;
-        Areas out;
+        const auto before = static_cast<double>(first.distance);
+        SmaaAreas out;
         if (first.height * second.height < 0) {
-            const double change = second.height - first.height;
-            out = Line{first.height + change * from, first.height + change * to}.areas();
-        } else {
-            // From each end to the middle, where the line meets the edge: the integral of 1 - 2 t as far as that is.
-            const auto half = [&](double a, double b) {
-                const double p = std::max(1 - 2 * a, 0.0), q = std::max(1 - 2 * b, 0.0);
-                return (p * p - q * q) * length / 4;
+            const auto step = [&](const End& end) {
+                return end.next < 4 ? static_cast<double>(end.next) : std::max(length, 4.0);
             };
-            const double area = first.height * half(from, to) + second.height * half(1 - to, 1 - from);
-            out = {std::max(-area, 0.0), std::max(area, 0.0)};
+            double previous = step(first), next = step(second);
+            // Steps of one line differ by a pixel at most.
+            const auto [least, most] = std::minmax({previous, length, next});
+            if (first.is_corner() || second.is_corner() || most - least > 1) previous = next = length;
+            out = smaa_straight(before, length, previous, next).areas();
+            if (first.height > 0) std::swap(out.own, out.other);
+        } else {
+            out = smaa_bent(first.height, second.height, before, length);
         }
         round_corners(first, second, out);
         return out;
     }
 
-    void round_corners(const End& first, const End& second, Areas& out) const {
+    void round_corners(const End& first, const End& second, SmaaAreas& out) const {
         const double keep = 1 - double{smaa_.corner_rounding};
         const bool is_first = first.distance <= second.distance, is_second = second.distance <= first.distance;
         const double part = is_first && is_second ? 0.5 : 1;
@@ -179,7 +170,7 @@ class SmaaReference {
     /// The stair through a pixel's top that rises to the right, or to the left.
     struct Diagonal {
         int steps = 0;  ///< sides of pixels, its own top among them
-        Areas areas;
+        SmaaAreas areas;
     };
     Diagonal diagonal(std::int64_t x, std::int64_t y, bool is_rising) const {
         const std::int64_t ahead = is_rising ? 1 : -1;
@@ -227,7 +218,7 @@ class SmaaReference {
         const auto columns = static_cast<double>(up.columns + down.columns);
         const double slope = (columns + up.end + down.end) / (columns + 1);
         const double at = static_cast<double>(down.columns) * (slope - 1) - down.end;
-        out.areas = Line{at, at + slope}.areas();
+        out.areas = SmaaLine{at, at + slope}.areas();
         return out;
     }
 
@@ -235,21 +226,24 @@ class SmaaReference {
         Weights out;
         const Edges own = edges(x, y);
         bool is_diagonal = false;
+        // The side of a stair that rises is its own pixel's, that of one that falls the next pixel's.
+        const bool is_beside = !own.top && own.left && edges(x - 1, y).top;
+        SmaaAreas areas;
+        if (steps_.diagonal > 0 && (own.top || is_beside)) {
+            const std::int64_t of = is_beside ? x - 1 : x;
+            const Diagonal rising = diagonal(of, y, true), falling = diagonal(of, y, false);
+            const bool is_rising = rising.steps >= falling.steps;
+            const Diagonal& longest = is_rising ? rising : falling;
+            is_diagonal = longest.steps >= smaa_least_diagonal && !(is_beside && is_rising);
+            areas = longest.areas;
+        }
         if (own.top) {
-            Areas areas;
-            if (steps_.diagonal > 0) {
-                const Diagonal rising = diagonal(x, y, true), falling = diagonal(x, y, false);
-                const bool is_rising = rising.steps >= falling.steps;
-                const Diagonal& longest = is_rising ? rising : falling;
-                is_diagonal = longest.steps >= smaa_least_diagonal;
-                if (is_diagonal) areas = longest.areas;
-            }
             if (!is_diagonal) areas = orthogonal(x, y, false);
             out.up = areas.own, out.of_above = areas.other;
         }
         // A diagonal is smoothed from above and below alone.
         if (own.left && !is_diagonal) {
-            const Areas areas = orthogonal(x, y, true);
+            areas = orthogonal(x, y, true);
             out.left = areas.own, out.of_left = areas.other;
         }
         // As an image of 8 bits keeps them.
