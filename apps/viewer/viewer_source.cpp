@@ -2,7 +2,9 @@
 // What a viewer shows: the scene or the frames that it began with, read again, and others in their place.
 #include <fmt/format.h>
 
+#include "apps/darkroom/render/scene_flags.hpp"
 #include "core/text/param_text.hpp"
+#include "looks/look_parts.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
@@ -47,6 +49,7 @@ void Viewer::take_scene(std::unique_ptr<SceneSource> scene) {
     playback_ = {};
     if (!job_.is_edit) ground_.emplace(scene_->scene(), scene_->assets());
     is_cut_ = true;
+    follow_lens();
 }
 
 void Viewer::take_frames(std::unique_ptr<FrameSource> frames) {
@@ -55,6 +58,17 @@ void Viewer::take_frames(std::unique_ptr<FrameSource> frames) {
     source_ = std::move(frames);
     playback_ = Playback(source_->frames(), job_.frame_desc.frames_per_second.value_or(1 / job_.step));
     is_cut_ = true;
+    follow_lens();
+}
+
+/// Of the camera that is seen through.
+darkroom::CameraLens Viewer::lens() const {
+    return scene_ != nullptr ? lens_of(scene_->scene().camera) : darkroom::CameraLens();
+}
+
+// A scene's own look reads its camera by itself.
+void Viewer::follow_lens() {
+    if (document_) document_->follow_lens(document_->file() == job_.scene ? darkroom::CameraLens() : lens());
 }
 
 void Viewer::watch_source() {
@@ -139,7 +153,7 @@ void Viewer::take_other_picture() {
 void Viewer::take_other_look(const std::filesystem::path& look) {
     darkroom::LookOptions options = job_.look_options;
     options.folder = look.parent_path();
-    Result<darkroom::Look> read = darkroom::read_look(look, options);
+    Result<darkroom::Look> read = darkroom::read_look(look, options, lens());
     settle("other look", read ? Result<>() : failure(read.error()));
     if (!read) return;
     if (other_picture_)

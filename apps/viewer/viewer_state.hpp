@@ -126,6 +126,8 @@ class Viewer {
     };
     [[nodiscard]] darkroom::Result<> make_source();
     void take_scene(std::unique_ptr<SceneSource> scene);
+    [[nodiscard]] darkroom::CameraLens lens() const;
+    void follow_lens();
     void take_frames(std::unique_ptr<FrameSource> frames);
     void watch_source();
     void reload_source();

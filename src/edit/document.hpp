@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "edit/watch.hpp"
+#include "looks/camera_lens.hpp"
 
 namespace darkroom::edit {
 
@@ -22,8 +23,10 @@ class LookDocument {
     static constexpr std::size_t most_steps = 1000;
     static constexpr std::size_t most_history_bytes = std::size_t{256} << 20;  ///< tables that only it holds included
 
-    /// Of a look or a scene. Errors are read_look's.
-    [[nodiscard]] static Result<LookDocument> open(const std::filesystem::path& file, LookOptions options);
+    /// Of a look or a scene. `lens`: of the camera that the look is for, which says what the file does not; a scene's
+    /// own camera says it by itself. Errors are read_look's.
+    [[nodiscard]] static Result<LookDocument> open(const std::filesystem::path& file, LookOptions options,
+                                                   const CameraLens& lens = {});
     /// Of no file yet.
     explicit LookDocument(Look look = default_look(), LookOptions options = {});
 
@@ -68,6 +71,9 @@ class LookDocument {
     /// undo; but an effect is the one that its file holds now on both sides of every step. An error, "file:line:column:
     /// ...", leaves it, and comes once for each state of the files.
     Result<bool> reload_if_changed();
+    /// The look is for another camera: what the file does not write and nobody has changed is as that one says, at
+    /// every step of undo, too.
+    void follow_lens(const CameraLens& lens);
     /// Did the last reading of a change fail?
     [[nodiscard]] bool is_broken() const { return is_broken_; }
     /// What the reading of the file passed over, "file:line:column: ...".
@@ -92,10 +98,13 @@ class LookDocument {
     void keep_effects(Look& look, const Look& now) const;
     /// `is_spliced`: into the text that was read; else all is written anew.
     Result<> write(const std::filesystem::path& file, bool is_spliced);
+    /// The look as a file of its own.
+    [[nodiscard]] Result<std::string> written() const;
     Result<Look> read(std::string_view text, const Look& ids_of);
 
     std::filesystem::path file_;
     LookOptions options_;
+    CameraLens lens_;
     std::string text_;  ///< of the file, as it was read or written last
     /// The text that others wrote last, and its look: what is saved is spliced into that, not into what was saved
     /// before, so that a way back through the steps is one through the bytes, too.

@@ -88,17 +88,19 @@ Result<> load_again(Look& look, const LookOptions& options) {
 
 }  // namespace
 
-Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookOptions options) {
+Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookOptions options,
+                                        const CameraLens& lens) {
     if (options.folder.empty()) options.folder = file.parent_path();
     Result<std::string> text = read_look_text(file);
     if (!text) return failure(std::move(text));
     std::vector<std::string> warnings;
     std::vector<std::string>* const told = std::exchange(options.warnings, &warnings);
-    Result<Look> look = parse_look(*text, file.string(), options);
+    Result<Look> look = parse_look(*text, file.string(), options, lens);
     if (told != nullptr) told->insert(told->end(), warnings.begin(), warnings.end());
     if (!look) return failure(std::move(look));
     LookDocument out(std::move(*look), std::move(options));
     out.file_ = file;
+    out.lens_ = lens;
     out.text_ = out.read_text_ = std::move(*text);
     out.warnings_ = std::move(warnings);
     out.watch_files();
@@ -146,7 +148,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
     checking.load_resource = stand_in;
     const auto checked = [&](Result<std::string> text) -> Result<std::string> {
         if (!text) return text;
-        const Result<Look> read = parse_look(*text, shown, checking);
+        const Result<Look> read = parse_look(*text, shown, checking, lens_);
         // A look is saved even if its custom effect has an error at the moment.
         const bool is_readable = read || (is_spliced && parse_look(text_, shown, checking));
         if (is_readable && !read) return failure(read.error());
@@ -155,8 +157,8 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
                 fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
         return text;
     };
-    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_) : write_look(look_));
-    if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_));
+    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : written());
+    if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_, lens_));
     if (!text) return failure(text.error());
     if (Result<> done = write_file(file, std::as_bytes(std::span(*text)), true); !done) return done;
     file_ = file;
@@ -175,8 +177,8 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
 
 Result<std::string> LookDocument::unsaved_text() const {
     if (file_.empty()) return write_look(look_);
-    Result<std::string> text = splice_look(read_text_, read_, look_);
-    return text ? text : splice_look(text_, saved_, look_);
+    Result<std::string> text = splice_look(read_text_, read_, look_, lens_);
+    return text ? text : splice_look(text_, saved_, look_, lens_);
 }
 
 Result<> LookDocument::take_unsaved(std::string_view text) {
@@ -199,7 +201,7 @@ Result<bool> LookDocument::reload_if_changed() {
 
 /// Entries are those of `ids_of` that they are the counterparts of.
 Result<Look> LookDocument::read(std::string_view text, const Look& ids_of) {
-    Result<Look> read = parse_look(text, file_.string(), options_);
+    Result<Look> read = parse_look(text, file_.string(), options_, lens_);
     if (!read) return read;
     const std::vector<const LookEntry*> others = counterparts(*read, ids_of);
     for (std::size_t i = 0; i < others.size(); ++i) read->entries[i].id = others[i] == nullptr ? 0 : others[i]->id;

@@ -206,6 +206,55 @@ TEST_F(Document, WhatACameraSaysStandsInTheLookWhereItIsChanged) {
     EXPECT_TRUE(text.find("sensor_height") == std::string::npos) << text;
 }
 
+TEST_F(Document, ALookMayBeForACameraOfAnotherFile) {
+    if (find_effect("depth_of_field") == nullptr) GTEST_SKIP() << "this build has no effect depth_of_field";
+    const auto value = [](const LookDocument& document, std::string_view row) {
+        Look copy = document.look();
+        const LookEntry& entry = *find_entry(copy, "depth_of_field");
+        return std::bit_cast<float>(entry.words[entry.effect->parameters.find(row)->word]);
+    };
+    const auto set = [](LookDocument& document, std::string_view row, float to) {
+        const std::array words{std::bit_cast<std::uint32_t>(to)};
+        return document.edit("Lens", [&](Look& look) { return set_value(look, "depth_of_field", row, words); });
+    };
+    const float usual = value(LookDocument(), "f_stop");
+    const std::string text = "[post_process]\nexposure = 1.0\n";
+    const fs::path path = write("a.toml", text);
+    Result<LookDocument> opened = LookDocument::open(path, {}, {.aperture = 4.0f, .focus = 3.0f});
+    ASSERT_TRUE(opened) << opened.error().text;
+    LookDocument& document = *opened;
+    EXPECT_EQ(value(document, "f_stop"), 4);
+    EXPECT_EQ(value(document, "focus_distance"), 3);
+    EXPECT_FALSE(document.is_changed());
+    must(expose(document, 2.5f));
+    must(document.save());
+    EXPECT_EQ(text_of(path), "[post_process]\nexposure = 2.5\n") << "what the camera says is not the look's";
+    write("a.toml", text);
+    EXPECT_EQ(reloaded(document), "new");
+    EXPECT_EQ(value(document, "f_stop"), 4);
+
+    // Another camera: what was changed, and what the file says, stays.
+    must(set(document, "focus_distance", 7));
+    document.follow_lens({.aperture = 8.0f, .focus = 2.0f});
+    EXPECT_EQ(value(document, "f_stop"), 8);
+    EXPECT_EQ(value(document, "focus_distance"), 7);
+    document.undo();
+    EXPECT_EQ(value(document, "f_stop"), 8);
+    EXPECT_EQ(value(document, "focus_distance"), 2);
+    document.redo();
+    must(document.save());
+    EXPECT_EQ(text_of(path), text + "depth_of_field_focus_distance = 7.0\n");
+
+    // What is the effect's default is written, since the camera says otherwise.
+    must(set(document, "f_stop", usual));
+    fs::create_directories(folder_ / "other");
+    must(document.save_as(folder_ / "other" / "b.toml"));
+    const Result<LookDocument> again =
+        LookDocument::open(folder_ / "other" / "b.toml", {}, {.aperture = 8.0f, .focus = 2.0f});
+    ASSERT_TRUE(again) << again.error().text;
+    EXPECT_TRUE(says_same(again->look(), document.look()));
+}
+
 TEST_F(Document, WhatOthersWroteIsNotOverwritten) {
     const fs::path path = write("a.toml", "[post_process]\nexposure = 1.0\n");
     LookDocument document = open(path);

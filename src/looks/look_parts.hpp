@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "looks/camera_lens.hpp"
+
 namespace darkroom {
 
 /// The wire to the picture as it came.
@@ -73,13 +75,7 @@ void wake(LookEntry& entry);
 /// Entries of `look` that it wakes are woken. Errors: those of the file; it has an entry that `look` lacks.
 [[nodiscard]] Result<std::vector<LookLayer::Value>> layer_values(Look& look, const std::string& file,
                                                                  const LookOptions& options);
-/// What a scene's camera says of its lens. It stands in for what a look does not say of one.
-struct CameraLens {
-    std::optional<float> aperture;       ///< f-stop
-    std::optional<float> focus;          ///< distance along the view axis, metres
-    std::optional<float> sensor_height;  ///< millimetres
-};
-/// Its keys in [camera], and the rows that they stand in for, of effects that have a focus distance.
+/// The keys of a lens in [camera], and the rows that they stand in for, of effects that have a focus distance.
 struct LensKey {
     std::string_view key, row;
     std::optional<float> CameraLens::*member;
@@ -87,9 +83,12 @@ struct LensKey {
 inline constexpr std::array<LensKey, 3> lens_keys{{{"aperture", "f_stop", &CameraLens::aperture},
                                                    {"focus", "focus_distance", &CameraLens::focus},
                                                    {"sensor_height", "sensor_height", &CameraLens::sensor_height}}};
-/// read_look() for what such a camera sees. Where it says nothing, the [camera] of a look that is a scene's counts.
+/// read_look() and parse_look() for what such a camera sees. Where it says nothing, the [camera] of a look that is a
+/// scene's counts.
 [[nodiscard]] Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options,
                                      const CameraLens& lens);
+[[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options,
+                                      const CameraLens& lens);
 /// The text of a look's file, if it is one that may be read.
 [[nodiscard]] Result<std::string> read_look_text(const std::filesystem::path& path);
 /// Letters, digits, '_' and '-', up to 64.

@@ -60,6 +60,47 @@ TEST_F(CliViewer, EveryFlagOfThePicturesIsObeyed) {
     }
 }
 
+// As `render` does: CliRenderPixels.TheScenesCameraSaysItsLens.
+TEST_F(CliViewer, ALookOfAnotherFileHasTheLensOfTheScenesCamera) {
+    const auto scene = [&](const std::string& name, const std::string& lens) {
+        return write(name, "[camera]\nposition = [1, 3, 6]\ntarget = [0, 0.5, 0]\n" + lens +
+                               "[entities.floor]\nbounds = { min = [-3, 0.01, -3], max = [3, 0.05, 3] }\n"
+                               "[entities.box]\nbounds = { min = [-0.6, 0.05, -0.6], max = [0.6, 1.2, 0.6] }\n"
+                               "material = { color = [0.8, 0.3, 0.1] }\n");
+    };
+    const std::string near = "aperture = 0.5\nfocus = 3\nsensor_height = 400\n",
+                      far = "aperture = 0.5\nfocus = 9\nsensor_height = 400\n";
+    const std::string file = scene("lens.scene.toml", near), plain = scene("plain.scene.toml", "");
+    const std::string look = write("blurred.toml", "[post_process]\ndepth_of_field_enabled = true\n");
+    const auto shown = [&](const std::string& command, const std::string& of, std::vector<std::string> flags) {
+        flags.insert(flags.begin(),
+                     {command, of, "--look", look, "--size", "960x600", "--screenshot", path("shown.png")});
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return picture("shown.png");
+    };
+    for (const char* const command : {"play", "edit"}) {
+        const Picture blurred = shown(command, file, {});
+        EXPECT_EQ(difference(blurred, shown(command, plain,
+                                            {"--depth-of-field-f-stop", "0.5", "--depth-of-field-focus-distance", "3",
+                                             "--depth-of-field-sensor-height", "400"})),
+                  0)
+            << command;
+        EXPECT_GT(difference(blurred, shown(command, plain, {})), 0) << command;
+    }
+
+    start({"edit", file, "--look", look, "--size", "800x600"});
+    press("p", "P pause: on");
+    const Picture before = shot();
+    scene("lens.scene.toml", far);
+    ASSERT_TRUE(wait_for("read lens.scene.toml again")) << said() << complained();
+    EXPECT_GT(difference(before, shot()), 0) << "the camera is focused elsewhere";
+    scene("lens.scene.toml", near);
+    ASSERT_TRUE(wait_until([&] { return count("read lens.scene.toml again") == 2; }, 60)) << said() << complained();
+    EXPECT_EQ(difference(before, shot()), 0);
+    leave();
+}
+
 TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
     ASSERT_EQ(run({"render", scenes_folder + "dungeon.scene.toml", "--size", "161x97", "-o", path("r.png"), "--frame",
                    path("frame.exr")})

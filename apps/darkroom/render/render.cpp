@@ -128,12 +128,10 @@ class Render {
     }
 
     Result<> read_look() {
-        const scene::Lens& lens = scene_.camera.lens;
         flags_.add_lens_of(scene_.camera, job_.desc.lens);
         // Models hold no look.
         Result<darkroom::Look> look =
-            flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene,
-                             {.aperture = lens.aperture, .focus = lens.focus, .sensor_height = lens.sensor_height});
+            flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene, lens_of(scene_.camera));
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         if (Result<> done = check_ui_files(look_); !done) return done;

@@ -180,6 +180,11 @@ void SceneFlags::add_drawing(CommandFlags command) {
         .group(group);
 }
 
+darkroom::CameraLens lens_of(const darkroom::scene::Camera& camera) {
+    const darkroom::scene::Lens& lens = camera.lens;
+    return {.aperture = lens.aperture, .focus = lens.focus, .sensor_height = lens.sensor_height};
+}
+
 Result<std::uint64_t> SceneFlags::seed() const {
     std::uint64_t seed = 0;
     if (Result<> done = seed_.read_to(seed); !done) return failure(std::move(done));

@@ -10,6 +10,7 @@
 
 #include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
+#include "looks/camera_lens.hpp"
 #include "render/renderer.hpp"
 #include "scene/pose/snapshot.hpp"
 
@@ -17,6 +18,9 @@ namespace app {
 
 /// Samples of the rasteriser, of which every device has four: where light is not accumulated.
 inline constexpr std::uint32_t usual_msaa = 4;
+
+/// What a camera says to looks that are seen through it.
+[[nodiscard]] darkroom::CameraLens lens_of(const darkroom::scene::Camera& camera);
 
 class SceneFlags {
   public:

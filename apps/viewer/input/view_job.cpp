@@ -106,6 +106,14 @@ Result<> read_subject(ViewerJob& job, const ViewFlags& flags, const std::vector<
     return {};
 }
 
+/// What the scene's camera says to a look of another file. What is wrong with the scene is said by who draws it.
+darkroom::CameraLens lens_for(const ViewerJob& job, const std::filesystem::path& look) {
+    if (job.scene.empty() || look == job.scene || darkroom::scene::is_model_path(job.scene)) return {};
+    const Result<darkroom::scene::Scene> scene =
+        darkroom::scene::read_scene(job.scene, {.named_files = job.scene_desc.named_files});
+    return scene ? lens_of(scene->camera) : darkroom::CameraLens();
+}
+
 Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path path) {
     // Models hold no look.
     if (path.empty() && !job.scene.empty() && !darkroom::scene::is_model_path(job.scene)) path = job.scene;
@@ -116,7 +124,8 @@ Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path
     if (path.empty()) {
         job.document.emplace(darkroom::default_look(), job.look_options);
     } else {
-        Result<darkroom::edit::LookDocument> opened = darkroom::edit::LookDocument::open(path, options);
+        Result<darkroom::edit::LookDocument> opened =
+            darkroom::edit::LookDocument::open(path, options, lens_for(job, path));
         // The window tells those of a look that it shows.
         if (!opened)
             for (const std::string& warning : warnings) warn(warning);

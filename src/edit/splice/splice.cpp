@@ -38,7 +38,8 @@ std::string bool_text(Toggle toggle) { return toggle.on != 0 ? "true" : "false";
 
 class Splicer {
   public:
-    Splicer(TomlEditor editor, const Look& was, const Look& is) : editor_(std::move(editor)), was_(was), is_(is) {}
+    Splicer(TomlEditor editor, const Look& was, const Look& is, const CameraLens& lens)
+        : editor_(std::move(editor)), was_(was), is_(is), lens_(lens) {}
 
     Result<std::string> run() {
         for (const auto step : {&Splicer::write_picture, &Splicer::write_ui})
@@ -281,11 +282,12 @@ class Splicer {
         return {};
     }
 
-    /// Does the camera of a scene say it where the look does not?
+    /// Does a camera say it where the look does not?
     bool is_said_by_camera(const LookEntry& entry, const ParamInfo& row) const {
         return entry.effect->parameters.find("focus_distance") != nullptr &&
                std::ranges::any_of(lens_keys, [&](const LensKey& key) {
-                   return key.row == row.name && editor_.contains({"camera", std::string(key.key)});
+                   return key.row == row.name &&
+                          (lens_.*key.member || editor_.contains({"camera", std::string(key.key)}));
                });
     }
 
@@ -310,15 +312,16 @@ class Splicer {
     TomlEditor editor_;
     const Look& was_;
     const Look& is_;
+    const CameraLens& lens_;
 };
 
 }  // namespace
 
-Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is) {
+Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is, const CameraLens& lens) {
     if (const auto parsed = parse_toml(text, was.shown_name); !parsed) return failure(parsed.error());
     Result<TomlEditor> editor = TomlEditor::of(std::string(text));
     if (!editor) return failure(std::move(editor));
-    Result<std::string> out = Splicer(std::move(*editor), was, is).run();
+    Result<std::string> out = Splicer(std::move(*editor), was, is, lens).run();
     if (!out) return failure(Error{out.error().fault, fmt::format("{}: {}", is.shown_name, out.error().text)});
     return out;
 }

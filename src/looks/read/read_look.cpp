@@ -155,10 +155,15 @@ Result<Look> parse(std::string_view text, const std::string& shown_name, const L
 
 }  // namespace
 
-Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) try {
-    return parse(text, shown_name, options, {});
+Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options,
+                        const CameraLens& lens) try {
+    return parse(text, shown_name, options, lens);
 } catch (...) {
     return caught("parse_look");
+}
+
+Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) {
+    return parse_look(text, std::move(shown_name), options, {});
 }
 
 Result<std::string> read_look_text(const std::filesystem::path& path) {
