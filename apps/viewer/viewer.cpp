@@ -73,8 +73,13 @@ Result<> Viewer::open() {
     tell_warnings();
     screen_.messages().set_folder(document_->options().folder);
     if (Result<> done = open_views(); !done) return done;
-    if (EditPanels* const panels = screen_.editor())
+    if (EditPanels* const panels = screen_.editor()) {
         panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(effect); });
+        panels->look().set_numbers([this](std::string_view name) {
+            const auto& view = views_[static_cast<std::size_t>(Side::Look)];
+            return view ? view->composer().value(name).numbers : std::span<const float>();
+        });
+    }
     if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("click to look around with the mouse, Esc frees it");
     return {};
 }

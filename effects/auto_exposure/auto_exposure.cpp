@@ -40,7 +40,7 @@ const AutoExposure& values_of(const void* parameters) { return *static_cast<cons
 
 /// A count and a sum each.
 constexpr std::uint32_t bins = 256, numbers = 2 * bins;
-constexpr std::uint32_t invocations = 128, adapted_numbers = 4;
+constexpr std::uint32_t invocations = 128, adapted_numbers = 4, histogram_numbers = 6 + bins;
 /// Two points of the curve a vector, behind one of the rest.
 constexpr std::uint32_t adapt_vectors = 1 + Curve::capacity / 2;
 
@@ -70,7 +70,8 @@ std::optional<PassImage> mask_image(PassBuilder& builder) {
 void build(PassBuilder& builder) {
     using Access = ComputePassDesc::Access;
     const PassBuffer counts = builder.create_buffer("counts", 4 * numbers),
-                     adapted = builder.value("auto_exposure", adapted_numbers);
+                     adapted = builder.value("auto_exposure", adapted_numbers),
+                     histogram = builder.value("auto_exposure.histogram", histogram_numbers);
     builder.add_compute({.name = "clear",
                          .shader = "auto_exposure_clear.glsl",
                          .inputs = {},
@@ -88,16 +89,17 @@ void build(PassBuilder& builder) {
                          .workgroup = {16, 8},
                          .shared_bytes = 4 * bins,
                          .tile = {64, 16}});
-    builder.add_compute(
-        {.name = "adapt",
-         .shader = "auto_exposure_adapt.glsl",
-         .inputs = {},
-         .buffers = {{"auto_exposure_counts", counts}, {"auto_exposure_adapted", adapted, Access::ReadWrite, "float"}},
-         .workgroup = {invocations, 1},
-         .shared_bytes = (4 + 8) * invocations,
-         .groups = {1, 1},
-         .custom_vectors = adapt_vectors,
-         .constants = adapt_constants});
+    builder.add_compute({.name = "adapt",
+                         .shader = "auto_exposure_adapt.glsl",
+                         .inputs = {},
+                         .buffers = {{"auto_exposure_counts", counts},
+                                     {"auto_exposure_adapted", adapted, Access::ReadWrite, "float"},
+                                     {"auto_exposure_histogram", histogram, Access::ReadWrite, "float"}},
+                         .workgroup = {invocations, 1},
+                         .shared_bytes = (4 + 8) * invocations,
+                         .groups = {1, 1},
+                         .custom_vectors = adapt_vectors,
+                         .constants = adapt_constants});
     builder.value_side("auto_exposure_adapted", adapted);
 }
 

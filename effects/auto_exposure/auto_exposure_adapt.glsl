@@ -2,7 +2,9 @@
 // One group: the mean of the histogram between two percentiles, a bin's pixels being where they are on average; the
 // exposure that brings it to middle grey; and how far the exposure has come by now. auto_exposure_adapted holds the
 // multiplier, its stops, the stops that it moves toward and the metered ones from middle grey; zeros before the first
-// frame and after a cut.
+// frame and after a cut. auto_exposure_histogram holds what hosts show: the stops from middle grey at which the bins begin,
+// the stops of a bin, those between which is metered, the metered ones and those of the exposure; and the share of all that
+// each bin has.
 shared uint auto_exposure_through[128];
 shared vec2 auto_exposure_sums[128];
 
@@ -32,6 +34,17 @@ float auto_exposure_moved(float stops, float target) {
     return target < stops ? target + left : target - left;
 }
 
+float auto_exposure_stops(float bin) { return bin / 8.0 - 16.0 - auto_exposure_grey; }
+
+// Notes a bin, of which so many pixels are darker and so many darker or in it. Where an edge of the window lies in it, its
+// pixels are all over it.
+void auto_exposure_note(uint bin, float darker, float through, vec2 window, float all) {
+    auto_exposure_histogram[6u + bin] = (through - darker) / max(all, 1.0);
+    vec2 at = float(bin) + (window - darker) / max(through - darker, 1.0);
+    if (darker <= window.x && window.x < through) auto_exposure_histogram[2] = auto_exposure_stops(at.x);
+    if (darker < window.y && window.y <= through) auto_exposure_histogram[3] = auto_exposure_stops(at.y);
+}
+
 void run() {
     AutoExposure parameters = auto_exposure_parameters();
     uint own = gl_LocalInvocationIndex;
@@ -51,7 +64,10 @@ void run() {
     barrier();
     float all = float(auto_exposure_through[127]);
     vec2 window = all * vec2(parameters.low, max(parameters.high, parameters.low + 0.001));
-    vec3 edges = clamp(vec3(through - counts.x - counts.y, through - counts.y, through), window.x, window.y);
+    vec3 ends = vec3(through - counts.x - counts.y, through - counts.y, through);
+    auto_exposure_note(bins.x, ends.x, ends.y, window, all);
+    auto_exposure_note(bins.y, ends.y, ends.z, window, all);
+    vec3 edges = clamp(ends, window.x, window.y);
     vec2 parts = edges.yz - edges.xy;
     vec2 sum = vec2(parts.x + parts.y, dot(parts, places));
     for (uint others = 64u; others > 0u; others /= 2u) {
@@ -62,7 +78,7 @@ void run() {
     }
     if (own != 0u) return;
     // Where the mask leaves nothing, nothing is changed.
-    float metered = all > 0.0 ? sum.y / sum.x / 8.0 - 16.0 - auto_exposure_grey : 0.0;
+    float metered = all > 0.0 ? auto_exposure_stops(sum.y / sum.x) : 0.0;
     float target = parameters.compensation + auto_exposure_curve(metered) -
                    clamp(metered, parameters.darkest, max(parameters.brightest, parameters.darkest));
     // From the frame before on it moved toward what that frame showed.
@@ -72,4 +88,9 @@ void run() {
     auto_exposure_adapted[1] = stops;
     auto_exposure_adapted[2] = target;
     auto_exposure_adapted[3] = metered;
+    auto_exposure_histogram[0] = auto_exposure_stops(0.0);
+    auto_exposure_histogram[1] = 1.0 / 8.0;
+    if (all == 0.0) auto_exposure_histogram[2] = auto_exposure_histogram[3] = 0.0;
+    auto_exposure_histogram[4] = metered;
+    auto_exposure_histogram[5] = stops;
 }

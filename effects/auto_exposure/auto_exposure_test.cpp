@@ -320,6 +320,38 @@ TEST(EffectAutoExposure, GpuTellsTheHostAndReadsWhatItsSourceNames) {
     EXPECT_NEAR(numbers[3], 1.5, 0.005) << "those that are metered";
 }
 
+// Half of the pixels a stop above grey, a quarter three stops below it, a quarter four above it.
+TEST(EffectAutoExposure, GpuTellsTheHostTheHistogramAndTheWindow) {
+    ReferenceImage picture(64, 32);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = grey_of(i % 4 < 2 ? 1 : i % 4 == 2 ? -3 : 4).pixels[0];
+    std::vector<float> color;
+    for (const Rgba& pixel : picture.pixels)
+        for (const double value : {pixel.r, pixel.g, pixel.b, pixel.a}) color.push_back(static_cast<float>(value));
+    Composer composer(gpu::test::device(), {.frames_in_flight = 1});
+    composer.add(AutoExposure{.low = 0.5f, .high = 1});
+    Developer developer(gpu::test::device(), {.target = DevelopTarget::SceneLinear});
+    for (std::uint64_t i = 0; i < 2; ++i)
+        gpu::test::must(
+            developer.develop(composer, {.extent = {picture.width, picture.height}, .color = color, .frame_index = i}));
+    const auto numbers = composer.value("auto_exposure.histogram").numbers;
+    ASSERT_EQ(numbers.size(), 262u);
+    const AutoExposureBins bins = auto_exposure_reference_bins(picture, 0);
+    double all = 0, shares = 0;
+    for (const AutoExposureBin& bin : bins) all += bin.count;
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        EXPECT_NEAR(numbers[6 + i], bins[i].count / all, 1e-6) << i;
+        shares += double{numbers[6 + i]};
+    }
+    EXPECT_NEAR(shares, 1, 1e-5);
+    EXPECT_NEAR(numbers[0], -16 - grey, 1e-5) << "where the bins begin";
+    EXPECT_EQ(numbers[1], 0.125f) << "stops of a bin";
+    EXPECT_NEAR(numbers[2], 1, 0.125) << "half of those a stop above grey are darker";
+    EXPECT_NEAR(numbers[3], 4, 0.125) << "the brightest";
+    EXPECT_NEAR(numbers[4], 2.5, 0.005) << "what is metered";
+    EXPECT_NEAR(numbers[5], -2.5, 0.005) << "the exposure";
+}
+
 TEST(EffectAutoExposure, SaysWhatDoesNotGoTogether) {
     const auto conflict = [](const AutoExposure& exposure) { return effect_info(exposure).conflict(&exposure); };
     EXPECT_EQ(conflict({}), "");

@@ -5,6 +5,7 @@
 #include <darkroom/plan.hpp>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,7 @@ struct PanelState {
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed
     bool is_renaming_new = false;
     std::function<Thumbnail(const EffectInfo& effect)> thumbnails{};
+    std::function<std::span<const float>(std::string_view name)> numbers{};
     int adding_frame = -1;                  ///< of ImGui: the last one in which the list of effects to add was open
     bool shows_numbers = false;             ///< in place of wheels and curves
     std::string filter{};                   ///< of the list of effects to add

@@ -250,6 +250,7 @@ std::string LookPanels::selected() const {
 void LookPanels::select(std::string_view entry) { state_->select(entry); }
 
 void LookPanels::set_thumbnails(ThumbnailOf thumbnails) { state_->thumbnails = std::move(thumbnails); }
+void LookPanels::set_numbers(NumbersOf numbers) { state_->numbers = std::move(numbers); }
 bool LookPanels::is_adding() const {
     const int passed = ImGui::GetFrameCount() - state_->adding_frame;
     return state_->adding_frame >= 0 && (passed == 0 || passed == 1);

@@ -21,6 +21,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,8 @@ struct Thumbnail {
 };
 /// What an effect that is added would make of the picture.
 using ThumbnailOf = std::function<Thumbnail(const EffectInfo& effect)>;
+/// The numbers of a value that the host's Composer has (Composer::value); none: it has none.
+using NumbersOf = std::function<std::span<const float>(std::string_view name)>;
 
 class LookPanels {
   public:
@@ -92,6 +95,8 @@ class LookPanels {
     void select(std::string_view entry);
     /// For the list of effects that can be added: asked in every frame, of those that are seen.
     void set_thumbnails(ThumbnailOf thumbnails);
+    /// For effects that tell what they meter: asked in every frame, of the selected one.
+    void set_numbers(NumbersOf numbers);
     /// Is that list open?
     [[nodiscard]] bool is_adding() const;
     /// Effects whose parameters have wheels and curves show lines of numbers instead.

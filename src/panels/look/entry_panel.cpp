@@ -10,6 +10,7 @@
 #include "looks/apply/look_resources.hpp"
 #include "panels/look/entry_rows.hpp"
 #include "panels/panel_state.hpp"
+#include "panels/show/light_histogram.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/icons.hpp"
 
@@ -76,6 +77,18 @@ void draw_head(PanelState& state, const LookEntry& entry, const std::string& nam
     ImGui::Spacing();
 }
 
+/// Of an effect that meters.
+void draw_metered(PanelState& state, const LookEntry& entry, const std::string& name) {
+    if (!state.numbers || entry.state.enabled.on == 0) return;
+    const std::string value = fmt::format("{}.histogram", entry.effect->name);
+    const std::optional<LightHistogram> histogram = light_histogram_of(state.numbers(value));
+    if (!histogram) return;
+    ImGui::BeginGroup();
+    draw_light_histogram(*histogram);
+    ImGui::EndGroup();
+    state.note(name + ".histogram");
+}
+
 }  // namespace
 
 RowLine line_of(const PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row) {
@@ -121,6 +134,7 @@ void draw_entry_panel(PanelState& state) {
     const std::string name = entry_names(state.look())[static_cast<std::size_t>(index)];
     ImGui::PushID(static_cast<int>(entry.id));
     draw_head(state, entry, name);
+    draw_metered(state, entry, name);
     std::vector<std::string> names;
     for (const ParamInfo& row : entry.effect->parameters.rows) names.push_back(shown_name(row.name));
     const bool has_state = !state.look().is_flat && !entry.is_of_ui;
