@@ -98,8 +98,6 @@ class LookDocument {
     void keep_effects(Look& look, const Look& now) const;
     /// `is_spliced`: into the text that was read; else all is written anew.
     Result<> write(const std::filesystem::path& file, bool is_spliced);
-    /// The look as a file of its own.
-    [[nodiscard]] Result<std::string> written() const;
     Result<Look> read(std::string_view text, const Look& ids_of);
 
     std::filesystem::path file_;

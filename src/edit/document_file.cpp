@@ -157,7 +157,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
                 fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
         return text;
     };
-    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : written());
+    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : write_look(look_));
     if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_, lens_));
     if (!text) return failure(text.error());
     if (Result<> done = write_file(file, std::as_bytes(std::span(*text)), true); !done) return done;

@@ -4,7 +4,6 @@
 
 #include "edit/document.hpp"
 #include "edit/follow/compare.hpp"
-#include "edit/splice/splice.hpp"
 #include "looks/look_parts.hpp"
 
 namespace darkroom::edit {
@@ -45,16 +44,6 @@ void LookDocument::follow_lens(const CameraLens& lens) {
     carry_lens(read_, Look(read_), *base);
     carry_lens(saved_, Look(saved_), *saved);
     take(std::move(next));
-}
-
-// What the camera says otherwise is written, too, where it is the effect's default.
-Result<std::string> LookDocument::written() const {
-    std::string text = write_look(look_);
-    if (lens_ == CameraLens{}) return text;
-    LookOptions options = options_;
-    options.is_scene = false;
-    const Result<Look> read = parse_look(text, look_.shown_name, options, lens_);
-    return read ? splice_look(text, *read, look_, lens_) : text;
 }
 
 }  // namespace darkroom::edit

@@ -245,7 +245,7 @@ TEST_F(Document, ALookMayBeForACameraOfAnotherFile) {
     must(document.save());
     EXPECT_EQ(text_of(path), text + "depth_of_field_focus_distance = 7.0\n");
 
-    // What is the effect's default is written, since the camera says otherwise.
+    // What is the effect's default stays so where the camera says otherwise.
     must(set(document, "f_stop", usual));
     fs::create_directories(folder_ / "other");
     must(document.save_as(folder_ / "other" / "b.toml"));
