@@ -41,7 +41,7 @@ PassImage blurred(PassBuilder& builder, PassImage image, std::uint32_t part) {
 }
 
 void build(PassBuilder& builder) {
-    const std::uint32_t part = builder.from_max_extent(bright_part);
+    const std::uint32_t part = builder.from_max_extent(halation_part);
     const PassImage bright = add_bright_light(builder, builder.picture(), part, bright_constants);
     const PassImage near = blurred<false>(builder, bright, part);
     const PassImage quarter = add_quarter_light(builder, near, 4 * part);

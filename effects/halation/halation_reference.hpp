@@ -12,6 +12,14 @@
 
 namespace darkroom {
 
+/// bright_part(), but for pictures of few lines, of which glows of few texels would be squares: as many texels as at
+/// 1080 lines at most.
+inline std::uint32_t halation_part(VkExtent2D extent) {
+    std::uint32_t part = bright_part(extent);
+    while (part > 1 && extent.height < part * 135) part /= 2;
+    return part;
+}
+
 /// Standard deviation in texels of the small picture of this height.
 inline double halation_near_texels(const Halation& halation, std::uint32_t small_height) {
     return double{halation.radius} * small_height / 1080;
@@ -27,8 +35,8 @@ inline double halation_far_variance(double texels) {
 inline ReferenceImage halation_reference(const void* parameters, const ReferenceInput& input) {
     const Halation& halation = *static_cast<const Halation*>(parameters);
     ReferenceImage out = *input.picture;
-    const std::uint32_t part = bright_part({out.width, out.height});
-    const ReferenceImage bright = bright_reference(*input.picture, double{halation.threshold});
+    const std::uint32_t part = halation_part({out.width, out.height});
+    const ReferenceImage bright = bright_reference(*input.picture, double{halation.threshold}, part);
     const double texels = halation_near_texels(halation, bright.height);
     const ReferenceImage near = blur_light_reference(bright, halation_near_variance(texels));
     const ReferenceImage far = blur_light_reference(

@@ -19,7 +19,7 @@ ReferenceImage reference(const Halation& halation, const ReferenceImage& picture
     return halation_reference(&halation, {.picture = &picture, .source = &picture});
 }
 
-/// A light of 4x4 pixels, which are a texel of the small picture, in the middle of 256x256.
+/// A light of 4x4 pixels in the middle of 256x256, whose bright light has as many texels.
 ReferenceImage lamp(double light) {
     ReferenceImage picture(256, 256, {0, 0, 0, 1});
     for (std::uint32_t y = 128; y < 132; ++y)
@@ -48,8 +48,8 @@ TEST(EffectHalation, OrGainsWhatComesBack) {
     EXPECT_EQ(sum_of(out, &Rgba::b), sum_of(picture, &Rgba::b));
 }
 
-// Of a lamp as wide as a texel of the small picture: the radius' variance, less that of the mean over the texel, which
-// the lamp is; and three times the radius.
+// The radius' variance, less that of the mean over a texel, which a texel of the lamp is already, and that of the
+// lamp's texels; and three times the radius.
 TEST(EffectHalation, TheRadiusIsTheDeviation) {
     for (const float radius : {24.0f, 32.0f})
         for (const bool is_far : {false, true}) {
@@ -65,10 +65,32 @@ TEST(EffectHalation, TheRadiusIsTheDeviation) {
                     down += added * (y - 129.5) * (y - 129.5);
                 }
             const double deviation = (is_far ? 3 : 1) * double{radius} * 256 / 1080;
-            const double expected = deviation * deviation - 16.0 / 12;
+            const double expected = deviation * deviation - 1.0 / 12 + (16 - 1) / 12.0;
             EXPECT_NEAR(across / all / expected, 1, 0.04) << radius << ", " << is_far;
             EXPECT_NEAR(down / all / expected, 1, 0.04) << radius << ", " << is_far;
         }
+}
+
+// As far as a standard deviation of the far glow from a lamp, in all directions: it may not be a square.
+TEST(EffectHalation, GlowsAreRoundInPicturesOfFewLines) {
+    for (const std::uint32_t lines : {269u, 378u}) {
+        ReferenceImage picture(lines, lines, {0, 0, 0, 1});
+        const double x = 0.5 * lines + 1.7, y = 0.5 * lines - 2.3;
+        const auto distance = [&](std::uint32_t i, std::uint32_t j) { return std::hypot(i + 0.5 - x, j + 0.5 - y); };
+        for (std::uint32_t j = 0; j < lines; ++j)
+            for (std::uint32_t i = 0; i < lines; ++i)
+                if (distance(i, j) < lines / 100.0) picture.at(i, j) = {90, 90, 90, 1};
+        const ReferenceImage out = reference({.intensity = 1}, picture);
+        const double far = 3 * 10.0 * lines / 1080;
+        double least = 1e9, most = 0;
+        for (std::uint32_t j = 0; j < lines; ++j)
+            for (std::uint32_t i = 0; i < lines; ++i)
+                if (std::abs(distance(i, j) - far) < 0.5) {
+                    least = std::min(least, out.at(i, j).r);
+                    most = std::max(most, out.at(i, j).r);
+                }
+        EXPECT_LT(most / least, 2) << lines;
+    }
 }
 
 TEST(EffectHalation, GpuLeavesFlatFieldsAndDarkPicturesAlone) {

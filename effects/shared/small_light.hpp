@@ -40,8 +40,7 @@ inline PassImage add_bright_light(PassBuilder& builder, PassImage source, std::u
 
 /// The mean of bilinear taps, two pixels apart, of each what exceeds the threshold: c max(b - threshold, 0) / b,
 /// b = max(r, g, b). Not a number and negative light count as 0.
-inline ReferenceImage bright_reference(const ReferenceImage& picture, double threshold) {
-    const std::uint32_t part = bright_part({picture.width, picture.height});
+inline ReferenceImage bright_reference(const ReferenceImage& picture, double threshold, std::uint32_t part) {
     ReferenceImage from = picture;
     for (Rgba& color : from.pixels) {
         color = clean_reference(color);
@@ -63,6 +62,10 @@ inline ReferenceImage bright_reference(const ReferenceImage& picture, double thr
                     out.at(x, y) = weighed_sum_reference(out.at(x, y), light, kept / (across * down));
                 }
     return out;
+}
+
+inline ReferenceImage bright_reference(const ReferenceImage& picture, double threshold) {
+    return bright_reference(picture, threshold, bright_part({picture.width, picture.height}));
 }
 
 /// Texels to one side that a Gaussian has at most: an even number, two to a tap.
