@@ -76,7 +76,7 @@ std::optional<LightHistogram> light_histogram_of(std::span<const float> numbers)
                           .low = numbers[2],
                           .high = numbers[3],
                           .metered = numbers[4],
-                          .exposure = numbers[5],
+                          .added = numbers[5],
                           .shares = numbers.subspan(head)};
 }
 
@@ -104,7 +104,7 @@ void draw_light_histogram(const LightHistogram& histogram) {
         fmt::format("Metered {:+.2f} stops ({:+.1f} to {:+.1f})", histogram.metered, histogram.low, histogram.high)
             .c_str());
     ImGui::TextUnformatted(
-        fmt::format("Exposure {:+.2f} stops, times {:.3g}", histogram.exposure, std::exp2(histogram.exposure)).c_str());
+        fmt::format("Exposed by {:+.2f} stops, times {:.3g}", histogram.added, std::exp2(histogram.added)).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
 }

@@ -13,9 +13,9 @@
 namespace darkroom::panels {
 
 struct LightHistogram {
-    float first = 0, step = 1;  ///< stops
-    float low = 0, high = 0;    ///< what is metered lies between
-    float metered = 0, exposure = 0;
+    float first = 0, step = 1;     ///< stops
+    float low = 0, high = 0;       ///< what is metered lies between
+    float metered = 0, added = 0;  ///< stops, of the picture and by the exposure
     std::span<const float> shares;
 };
 

@@ -25,7 +25,7 @@ TEST(PanelLightHistogram, IsWhatAnEffectTellsOrNothing) {
     EXPECT_EQ(histogram->low, 3);
     EXPECT_EQ(histogram->high, 5);
     EXPECT_EQ(histogram->metered, 4);
-    EXPECT_EQ(histogram->exposure, -4);
+    EXPECT_EQ(histogram->added, -4);
 }
 
 TEST(PanelLightHistogram, BinsStandWhereTheirStopsAreAndWhatCountsIsBright) {
