@@ -145,7 +145,7 @@ Result<> create_instance(Context& context, PFN_vkGetInstanceProcAddr loader, boo
     };
     const VkResult created = vk.CreateInstance(&create_info, context.allocator, &context.instance);
     // So say loaders that find none.
-    if (created == VK_ERROR_INCOMPATIBLE_DRIVER) return gpu::no_device();
+    if (created == VK_ERROR_INCOMPATIBLE_DRIVER) return gpu::no_device(fmt::format(" ({})", gpu::result_name(created)));
     if (Result<> checked = context.check(created, "creating a Vulkan instance"); !checked) return checked;
     context.is_owner = true;
     if (Result<> loaded = vk.load_instance(context.instance, context.traits.has_debug_labels); !loaded) return loaded;

@@ -32,7 +32,9 @@ std::string names_of(std::span<const DeviceInfo> infos) {
 
 }  // namespace
 
-Failure no_device() { return machine_error("no Vulkan device: the loader found no driver", ErrorCode::Unsupported); }
+Failure no_device(const std::string& why) {
+    return machine_error("no Vulkan device: the loader found no driver" + why, ErrorCode::Unsupported);
+}
 
 Result<std::size_t> select_device(std::span<const DeviceInfo> infos, const std::string& select) {
     if (infos.empty()) return no_device();
