@@ -17,9 +17,8 @@ void carry_lens(Look& look, const Look& was, const Look& is) {
         if (old == was.entries.end() || old->effect->name != entry.effect->name) continue;
         const LookEntry& now = is.entries[static_cast<std::size_t>(old - was.entries.begin())];
         for (const LensKey& key : lens_keys) {
-            const ParamInfo *const row = entry.effect->parameters.find(key.row), *const row_now =
-                                                                                     now.effect->parameters.find(
-                                                                                         key.row);
+            const ParamInfo* const row = entry.effect->parameters.find(key.row);
+            const ParamInfo* const row_now = now.effect->parameters.find(key.row);
             if (row != nullptr && row_now != nullptr && has_same(entry, *old, *row))
                 entry.words[row->word] = now.words[row_now->word];
         }

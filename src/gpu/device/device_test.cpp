@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 #include <darkroom/device.hpp>
 
@@ -172,18 +173,24 @@ TEST(GpuTimers, MeasureWithoutWaiting) {
     const gpu::Buffer copied = gpu::test::must(
         gpu::Buffer::create(context, 2 * half.size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                             gpu::Memory::Kind::Upload, "a test's time"));
-    const auto begin = std::chrono::steady_clock::now();
-    gpu::test::must(gpu::submit_and_wait(context, "marking", [&](VkCommandBuffer commands) {
-        timers.mark(commands, 1, 0);
-        context.vk.CmdCopyBuffer(commands, copied.handle, copied.handle, 1, &half);
-        timers.mark(commands, 1, 1);
-        timers.mark(commands, 1, 2);
-    }));
-    const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
-    EXPECT_EQ(timers.read(1, 3, milliseconds), 2U);
-    EXPECT_GT(milliseconds[0], milliseconds[1]) << "8 MiB are copied between the first two";
-    EXPECT_GE(milliseconds[1], 0.0);
-    EXPECT_LT(milliseconds[0] + milliseconds[1], passed.count());
+    // The least of some: others may run between two marks.
+    std::array<double, 2> least{1e9, 1e9};
+    for (int i = 0; i < 8; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        gpu::test::must(gpu::submit_and_wait(context, "marking", [&](VkCommandBuffer commands) {
+            timers.begin(commands, 1);
+            timers.mark(commands, 1, 0);
+            context.vk.CmdCopyBuffer(commands, copied.handle, copied.handle, 1, &half);
+            timers.mark(commands, 1, 1);
+            timers.mark(commands, 1, 2);
+        }));
+        const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
+        EXPECT_EQ(timers.read(1, 3, milliseconds), 2U);
+        EXPECT_LT(milliseconds[0] + milliseconds[1], passed.count());
+        for (std::size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], milliseconds[k]);
+    }
+    EXPECT_GT(least[0], least[1]) << "8 MiB are copied between the first two";
+    EXPECT_GE(least[1], 0.0);
 }
 
 }  // namespace
