@@ -310,10 +310,11 @@ Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const 
     result.context = &context;
     if (layouts.empty()) return result;
     const auto count = static_cast<std::uint32_t>(layouts.size());
-    // Layouts cannot be asked for their sizes, so each set counts as the largest that a kernel may have.
+    // Layouts cannot be asked for their sizes, so each set counts as the largest that a kernel may have, or a frame of
+    // the renderer: one more of either kind of buffer.
     const std::array sizes{
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * count},
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 5 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3 * count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16 * count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 16 * count},
     };
