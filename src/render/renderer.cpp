@@ -245,12 +245,13 @@ Result<> Renderer::State::prepare(const scene::Snapshot& next, const FrameJitter
     slot = (slot + 1) % desc.frames_in_flight;
     // From beside the camera more is seen, and what is near moves the farthest: then nothing lies outside.
     list = draw_list(next, desc.lens.f_stop > 0 ? scene::mat4(0) : jitter_matrix(jitter.now, desc.extent));
+    Result<> done;
     if (desc.draw.has_shadows && desc.draw.debug == DebugView::None) {
-        shadows->prepare(next);
+        done = shadows->prepare(next);
     } else {
         shadows->clear();
     }
-    Result<> done = meshes->prepare(mesh_draw(next, list), scene->meshes);
+    if (done) done = meshes->prepare(mesh_draw(next, list), scene->meshes);
     if (done) done = billboards->prepare(next, scene->meshes, slot);
     if (done) done = fill_buffers(slots[slot]);
     if (!done) return done;

@@ -159,7 +159,7 @@ TEST(RenderGpuLampShadows, TheImageIsAsLargeAsTheLampsNeedAndHoldsWhatTheyReach)
     const auto pass_for = [&](const scene::Snapshot& lit) {
         ShadowPass pass =
             test::must(ShadowPass::create(context, layout.handle, scene, {}, {.tiles = tiles_needed(lit)}));
-        pass.prepare(lit);
+        test::must(pass.prepare(lit));
         return pass;
     };
     const ShadowPass without = pass_for(snapshot);

@@ -222,7 +222,7 @@ void ShadowPass::clear() {
     state_->lists.clear();
 }
 
-void ShadowPass::prepare(const scene::Snapshot& snapshot) {
+Result<> ShadowPass::prepare(const scene::Snapshot& snapshot) {
     clear();
     State& state = *state_;
     const bool has_depth_clamp = state.context->traits.has_depth_clamp;
@@ -230,7 +230,7 @@ void ShadowPass::prepare(const scene::Snapshot& snapshot) {
     for (const std::uint32_t place : lights_with_shadows(snapshot)) {
         if (state.cascades.size() == state.most.lights) break;
         state.require_map(state.cascades.size());
-        if (state.error) return;
+        if (state.error) return failure(*state.error);
         const Cascades& cascades = state.cascades.emplace_back(
             fit_cascades(snapshot.camera, snapshot.lights[place].direction, state.desc, fitted));
         for (std::uint32_t i = 0; i < cascades.count; ++i) {
@@ -241,6 +241,7 @@ void ShadowPass::prepare(const scene::Snapshot& snapshot) {
         }
     }
     state.prepare_lamps(snapshot);
+    return state.error ? failure(*state.error) : Result<>();
 }
 
 Result<> ShadowPass::make_pipelines(const scene::Snapshot& snapshot) {

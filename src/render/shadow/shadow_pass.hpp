@@ -34,8 +34,8 @@ class ShadowPass {
 
     /// Fits the cascades and tiles of the snapshot's casting lights and lists their casters. Before the frame's buffers
     /// are filled: the instances of all lists go into the frame's instance buffer, one list after the other. Pipelines
-    /// are made when casters first need them, maps when lights do; record() tells where that failed.
-    void prepare(const scene::Snapshot& snapshot);
+    /// are made when casters first need them, maps when lights do. Where that failed, record() says so, too.
+    [[nodiscard]] Result<> prepare(const scene::Snapshot& snapshot);
     /// Makes the pipelines of all that the snapshot holds, wherever it is.
     Result<> make_pipelines(const scene::Snapshot& snapshot);
     /// Instead of prepare(): no light casts.

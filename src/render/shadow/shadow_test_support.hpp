@@ -96,7 +96,7 @@ class ShadowRig {
     /// Cascades and casters of the snapshot, and everything that set 0 needs.
     void prepare(const scene::Snapshot& snapshot) {
         snapshot_ = &snapshot;
-        pass.prepare(snapshot);
+        must(pass.prepare(snapshot));
         blocks::Frame frame{};
         frame.camera_position = vec4(snapshot.camera.position, 1);
         frame.camera_forward = -vec4(vec3(glm::transpose(snapshot.camera.view)[2]), 0);
