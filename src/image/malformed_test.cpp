@@ -204,6 +204,23 @@ TEST(ImageProportions, SidesPartsAndChannelsOfAnExrAreBounded) {
     EXPECT_NE(shown(4617, 768).find("is out of proportion to the data window"), std::string::npos);
 }
 
+// The library reads on where the value of a type ends, and would take the rest for sizes to allocate.
+TEST(ImageProportions, AttributesOfAnExrHaveTheSizeOfTheirType) {
+    const auto told = [](const std::string& type, const std::string& value) {
+        return refusal(check_exr, EmptyExr{.attributes = exr_attribute("a", type, value)}.text());
+    };
+    EXPECT_TRUE(told("float", little_endian(1U)).starts_with("unfinished"));
+    EXPECT_EQ(told("float", little_endian(1U) + "bc"), "malformed header: attribute a has 6 bytes, a float has 4");
+    EXPECT_EQ(told("m44f", ""), "malformed header: attribute a has 0 bytes, a m44f has 64");
+    EXPECT_TRUE(told("mine", "any bytes").starts_with("unfinished"));
+    const std::string channel =
+        std::string("A\0", 2) + little_endian(2U) + little_endian(0U) + little_endian(1U) + little_endian(1U);
+    EXPECT_TRUE(told("chlist", channel + '\0').starts_with("unfinished"));
+    EXPECT_EQ(told("chlist", channel), "malformed header: the channel list has no end");
+    EXPECT_EQ(told("chlist", channel + '\0' + channel),
+              "malformed header: the channel list ends before its attribute does");
+}
+
 TEST(ImageProportions, AttributesOfAnExrAreCounted) {
     const auto told = [](const std::string& attributes) {
         return refusal(check_exr, EmptyExr{.size = std::size_t{40} << 20, .attributes = attributes}.text());

@@ -6,99 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "decoders/file_kind.hpp"
+#include "image/exr/header.hpp"
 
 namespace darkroom {
 namespace {
 
-using Wide = long long;
+using namespace exr;
 
-// The layout is that of "OpenEXR File Layout" (Academy Software Foundation): little-endian, attributes by name.
 constexpr std::uint32_t tiled_flag = 0x200;
 constexpr std::uint32_t deep_flag = 0x800;
 constexpr std::uint32_t multi_part_flag = 0x1000;
-
-class Reader {
-  public:
-    Reader(std::span<const std::byte> bytes, std::size_t position = 0) : bytes_(bytes), position_(position) {}
-
-    [[nodiscard]] std::size_t position() const { return position_; }
-    [[nodiscard]] std::size_t left() const { return bytes_.size() - position_; }
-    [[nodiscard]] bool is_past_end() const { return is_past_end_; }
-
-    template <class T>
-    T number() {
-        T value{};
-        if (left() < sizeof(T)) return fail<T>();
-        std::memcpy(&value, bytes_.data() + position_, sizeof(T));
-        position_ += sizeof(T);
-        return value;
-    }
-    std::string_view text() {
-        const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + position_;
-        const auto* end = static_cast<const char*>(left() == 0 ? nullptr : std::memchr(begin, 0, left()));
-        if (end == nullptr) return fail<std::string_view>();
-        position_ += static_cast<std::size_t>(end - begin) + 1;
-        return {begin, static_cast<std::size_t>(end - begin)};
-    }
-    std::span<const std::byte> block(Wide size) {
-        if (size < 0 || static_cast<std::size_t>(size) > left()) return fail<std::span<const std::byte>>();
-        position_ += static_cast<std::size_t>(size);
-        return bytes_.subspan(position_ - static_cast<std::size_t>(size), static_cast<std::size_t>(size));
-    }
-
-  private:
-    template <class T>
-    T fail() {
-        is_past_end_ = true;
-        position_ = bytes_.size();
-        return T{};
-    }
-
-    std::span<const std::byte> bytes_;
-    std::size_t position_ = 0;
-    bool is_past_end_ = false;
-};
-
-struct Window {
-    Wide left = 0, top = 0, right = 0, bottom = 0;
-    [[nodiscard]] Wide width() const { return right - left + 1; }
-    [[nodiscard]] Wide height() const { return bottom - top + 1; }
-    [[nodiscard]] std::string text() const { return fmt::format("{}x{}", width(), height()); }
-};
-
-struct Tiles {
-    Wide width = 0, height = 0;
-    unsigned level_mode = 0;  // 0 one level, 1 mip-mapped, 2 rip-mapped
-    bool rounds_up = false;
-};
-
-// A decoder keeps each attribute of each part under its name, several times over: 2 kB and 10 us for one of no bytes.
-// Strings of a list count as attributes.
-constexpr std::size_t most_attributes = 65536;
-constexpr std::size_t most_attribute_bytes = std::size_t{32} << 20;
-
-struct AttributeCount {
-    std::size_t number = 0, bytes = 0;
-};
-
-struct CheckedPart {
-    std::optional<Window> data;
-    std::optional<Window> display;
-    std::optional<Tiles> tiles;
-    std::optional<unsigned> compression;
-    std::string type;
-    double bytes_per_pixel = 0;  // subsampled channels have fewer than one sample a pixel
-    Wide bytes = 0;              // of all pixels, at full resolution
-    Wide channel_count = 0;
-    Wide chunk_count = 0;
-};
 
 // By the number that the file stores: lines in a chunk, and how many bytes of pixels one byte of file can become at
 // most. Run lengths: 128 from 2. Deflate: 258 bytes from 2 bits. PIZ: a Huffman run of 255 words from 10 bits. B44A: 32
@@ -115,86 +36,6 @@ constexpr Wide largest_chunk = Wide{1} << 28;
 
 constexpr std::uint64_t always_decoded = std::uint64_t{1} << 30;
 constexpr std::uint64_t decoded_per_byte = 128;
-
-Result<> malformed(std::string_view what) { return user_error(fmt::format("malformed header: {}", what)); }
-Result<> cut_off() { return user_error("truncated: unexpected end of file in the header"); }
-
-Window read_window(Reader& reader) {
-    Window window;
-    window.left = reader.number<std::int32_t>();
-    window.top = reader.number<std::int32_t>();
-    window.right = reader.number<std::int32_t>();
-    window.bottom = reader.number<std::int32_t>();
-    return window;
-}
-
-Result<> read_channels(Reader reader, CheckedPart& part) {
-    for (;;) {
-        const std::string_view name = reader.text();
-        if (reader.is_past_end()) return malformed("the channel list has no end");
-        if (name.empty()) return {};
-        const auto type = reader.number<std::uint32_t>();
-        reader.number<std::uint32_t>();
-        const auto x_sampling = reader.number<std::int32_t>();
-        const auto y_sampling = reader.number<std::int32_t>();
-        if (reader.is_past_end()) return malformed("the channel list has no end");
-        if (type > 2) return malformed(fmt::format("a channel has pixel type {}, [0, 2] is allowed", type));
-        // Chroma at half the resolution is what there is.
-        constexpr std::int32_t coarsest = 64;
-        if (std::min(x_sampling, y_sampling) < 1 || std::max(x_sampling, y_sampling) > coarsest)
-            return malformed(fmt::format("channel {} is sampled {}x{}, [1, {}] is allowed", one_printable_line(name),
-                                         x_sampling, y_sampling, coarsest));
-        part.bytes_per_pixel += (type == 1 ? 2.0 : 4.0) / (x_sampling * y_sampling);
-        if (++part.channel_count > 1024) return malformed("more than 1024 channels");
-    }
-}
-
-Result<> read_attribute(std::string_view name, std::span<const std::byte> value, CheckedPart& part) {
-    Reader reader(value);
-    if (name == "channels") return read_channels(reader, part);
-    if (name == "dataWindow") part.data = read_window(reader);
-    if (name == "displayWindow") part.display = read_window(reader);
-    if (name == "compression") part.compression = reader.number<std::uint8_t>();
-    if (name == "type")
-        part.type.assign(reinterpret_cast<const char*>(value.data()), std::min<std::size_t>(value.size(), 32));
-    if (name == "tiles") {
-        Tiles tiles;
-        tiles.width = reader.number<std::uint32_t>();
-        tiles.height = reader.number<std::uint32_t>();
-        const auto mode = reader.number<std::uint8_t>();
-        tiles.level_mode = mode & 0xfu;
-        tiles.rounds_up = (mode >> 4) != 0;
-        part.tiles = tiles;
-    }
-    if (reader.is_past_end()) return malformed(fmt::format("attribute {} is too short", name));
-    return {};
-}
-
-Result<> count_attribute(std::string_view type, std::span<const std::byte> value, AttributeCount& count) {
-    ++count.number;
-    count.bytes += value.size();
-    if (type == "stringvector")
-        for (Reader reader(value); reader.left() > 0; ++count.number) reader.block(reader.number<std::int32_t>());
-    if (count.number > most_attributes) return malformed(fmt::format("more than {} attributes", most_attributes));
-    if (count.bytes > most_attribute_bytes)
-        return malformed(fmt::format("attributes of more than {} bytes", most_attribute_bytes));
-    return {};
-}
-
-Result<> read_part(Reader& reader, CheckedPart& part, AttributeCount& count) {
-    for (;;) {
-        const std::string_view name = reader.text();
-        if (reader.is_past_end()) return cut_off();
-        if (name.empty()) return {};
-        const std::string_view type = reader.text();
-        const auto size = reader.number<std::int32_t>();
-        if (size < 0) return malformed(fmt::format("an attribute of {} bytes", size));
-        const auto value = reader.block(size);
-        if (reader.is_past_end()) return cut_off();
-        if (auto counted = count_attribute(type, value, count); !counted) return counted;
-        if (auto read = read_attribute(name, value, part); !read) return read;
-    }
-}
 
 Result<> check_window(const Window& window, const char* name) {
     if (window.width() <= 0 || window.height() <= 0)
