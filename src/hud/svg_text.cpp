@@ -247,7 +247,8 @@ class Checker {
             add_script(without_entities(value));
         // What a link or a script names is nothing that is drawn.
         if (is_reference && element != "a" && element != "script" && !value.starts_with('#'))
-            refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", name, printable(value)));
+            refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", printable(name),
+                               printable(value)));
         check_style(without_entities(value));
         note(name, value);
         at_ = end + 1;
