@@ -667,7 +667,7 @@ DARKROOM_API DarkroomResult darkroom_composer_values_at(DarkroomComposer compose
                                                         const DarkroomCamera* camera, uint32_t* words, uint32_t* count,
                                                         VkBool32* is_enabled, float* opacity);
 /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
-/// picture of an unbroken one. `delta_time`: seconds between frames; 0: 1/60.
+/// picture of an unbroken one. `delta_time`: seconds between frames; 0: 1/60; below 0: none.
 DARKROOM_API DarkroomResult darkroom_composer_pre_roll(DarkroomComposer composer, double delta_time, uint32_t* frames);
 
 /// How a pulse dies down: darkroom/modulation.hpp.

@@ -430,6 +430,7 @@ void Composer::drop_overrides(std::string_view owner) {
 }
 
 std::uint32_t Composer::pre_roll(double delta_time) const try {
+    if (!(delta_time > 0)) return 0;
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
         const EntryDesc& desc = entry->desc;
