@@ -5,6 +5,7 @@
 #include <shaderc/shaderc.hpp>
 #include <string_view>
 
+#include "core/text/param_text.hpp"
 #include "gpu/shader/glsl_compiler.hpp"
 #include "gpu/shaderc_version.hpp"
 
@@ -33,8 +34,10 @@ std::string first_error(const std::string& messages, const std::string& name) {
     std::size_t begin = 0;
     while (begin < messages.size()) {
         const std::size_t end = std::min(messages.find('\n', begin), messages.size());
-        std::string line = messages.substr(begin, end - begin);
-        if (const std::size_t at = line.find(mark); at != std::string::npos) return line.erase(at, mark.size());
+        const std::string line = messages.substr(begin, end - begin);
+        // The message quotes the text, whatever its bytes are.
+        if (const std::size_t at = line.find(mark); at != std::string::npos)
+            return line.substr(0, at) + printable(line.substr(at + mark.size()));
         begin = end + 1;
     }
     return fmt::format("{}: the shader compiler failed without a message", name);

@@ -172,6 +172,9 @@ TEST(GpuShader, ErrorsNameFileAndLine) {
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().text, "effects/bloom/bloom.glsl:12: 'x' : undeclared identifier");
     EXPECT_EQ(result.error().fault, Fault::User);
+    const Result<Words> control = compiler.compile(source("void main() { \x13; }\n"));
+    ASSERT_FALSE(control);
+    EXPECT_NE(control.error().text.find("'\\x13'"), std::string::npos) << control.error().text;
 }
 
 TEST(GpuShader, CompilesManyInOrder) {
