@@ -34,9 +34,11 @@ cat >"$own/VkLayer_khronos_validation.json" <<END
                           {"name": "VK_EXT_validation_features", "spec_version": "5"}]}}
 END
 # Not for the library: what the layer says of its own settings; outputs of a shader that a pass has no image for, which
-# Vulkan allows; and how glslang lays out arrays of functions, which spirv-val has refused since 2025.
+# Vulkan allows; how glslang lays out arrays of functions, which spirv-val has refused since 2025; and functions of video
+# that NVIDIA's own layer asks a device for.
 filter=VALIDATION-SETTINGS,WARNING-Setting-Limit-Adjusted,VUID-StandaloneSpirv-None-10684
 filter+=,Undefined-Value-ShaderOutputNotConsumed-DynamicRendering,WARNING-Shader-OutputNotConsumed
+filter+=,WARNING-vkGetDeviceProcAddr-device
 cat >"$own/vk_layer_settings.txt" <<END
 khronos_validation.message_id_filter = $filter
 khronos_validation.validate_sync = true
