@@ -5,9 +5,11 @@
 
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "confined/messages.hpp"
 #include "confined/shared_memory.hpp"
+#include "core/text/param_text.hpp"
 #include "hud/svg_messages.hpp"
 
 namespace darkroom {
@@ -51,7 +53,8 @@ Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t wid
         process_.stop();
         return user_error(fmt::format("it takes more than {} s or too much memory to draw", limits_.seconds));
     }
-    if (!error.empty()) return user_error(std::move(error));
+    // A second line quotes the document's bytes.
+    if (!error.empty()) return user_error(printable(std::string_view(error).substr(0, error.find('\n'))));
 
     const Mapping drawn(memory->descriptor(), size, false);
     if (drawn.bytes().empty()) return failed(Error{Fault::Machine, "no room for a picture"});
