@@ -129,6 +129,7 @@ struct Presenter::State {
     void destroy(Swapchain& swapchain);
     void free_retired();
     void free_all_retired();
+    void drop_frame();
     Result<> replace_surface();
     Result<> wait_for(std::uint64_t finished);
     Result<std::optional<PresentFrame>> begin(VkExtent2D window);
@@ -336,13 +337,22 @@ void Presenter::State::free_all_retired() {
     retired.clear();
 }
 
+// An image was got that is not shown, and nothing waits for the semaphore that came with it: both begin anew.
+void Presenter::State::drop_frame() {
+    retire();
+    free_all_retired();
+    vk.DestroySemaphore(context->device, std::exchange(slots[frame.slot].is_acquired, VK_NULL_HANDLE),
+                        context->allocator);
+}
+
 // Nothing of it may be left before it goes.
 Result<> Presenter::State::replace_surface() {
     retire();
     free_all_retired();
     vk.DestroySurfaceKHR(context->instance, std::exchange(surface, VK_NULL_HANDLE), nullptr);
-    is_lost = false;
-    return make_surface();
+    Result<> made = make_surface();
+    is_lost = !made;
+    return made;
 }
 
 Result<> Presenter::State::wait_for(std::uint64_t count) {
@@ -363,7 +373,8 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
     const bool is_resized = window.width != asked.width || window.height != asked.height;
     VkResult result = is_lost ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
     if (!is_lost && (is_stale || is_resized)) result = make_swapchain(window);
-    const FrameSlot& slot = slots[next % in_flight];
+    FrameSlot& slot = slots[next % in_flight];
+    if (result == VK_SUCCESS && slot.is_acquired == VK_NULL_HANDLE) result = make_semaphore(slot.is_acquired);
     if (result == VK_SUCCESS)
         result = vk.AcquireNextImageKHR(context->device, swapchain.handle, patience, slot.is_acquired, VK_NULL_HANDLE,
                                         &image);
@@ -396,7 +407,10 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     if (result == VK_SUCCESS) result = context->vk.BeginCommandBuffer(slot.commands, &info);
-    if (Result<> done = check(result, "beginning a frame"); !done) return failure(std::move(done));
+    if (Result<> done = check(result, "beginning a frame"); !done) {
+        drop_frame();
+        return failure(std::move(done));
+    }
     change_layout(frame.age > 0 ? VK_IMAGE_LAYOUT_PRESENT_SRC_KHR : VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     return frame;
@@ -426,7 +440,10 @@ Result<> Presenter::State::end() {
     Swapchain::Image& target = swapchain.images[image];
     change_layout(VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
     VkResult result = context->vk.EndCommandBuffer(frame.commands);
-    if (Result<> done = check(result, "recording a frame"); !done) return done;
+    if (Result<> done = check(result, "recording a frame"); !done) {
+        drop_frame();
+        return done;
+    }
     const VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                              .commandBuffer = frame.commands};
     const VkSemaphoreSubmitInfo acquired{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
@@ -453,17 +470,20 @@ Result<> Presenter::State::end() {
                                    .swapchainCount = 1,
                                    .pSwapchains = &swapchain.handle,
                                    .pImageIndices = &image};
-    const std::lock_guard lock(context->queue_mutex);
+    std::unique_lock lock(context->queue_mutex);
     result = context->vk.QueueSubmit2(context->queue, 1, &submit, VK_NULL_HANDLE);
-    if (Result<> done = check(result, "submitting a frame"); !done) return done;
+    if (Result<> done = check(result, "submitting a frame"); !done) {
+        lock.unlock();
+        drop_frame();
+        return done;
+    }
     target.shown = next++;
     result = vk.QueuePresentKHR(context->queue, &present);
-    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
-        is_stale = true;
-        is_lost = result == VK_ERROR_SURFACE_LOST_KHR;
-        return {};
-    }
-    return check(result, "showing a frame");
+    // Nothing may have waited for the semaphore of this image, which goes with its swapchain.
+    is_stale = is_stale || result != VK_SUCCESS;
+    is_lost = result == VK_ERROR_SURFACE_LOST_KHR;
+    const bool is_replaced = is_lost || result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR;
+    return is_replaced ? Result<>() : check(result, "showing a frame");
 }
 
 Presenter::Presenter(std::unique_ptr<State> state) : state_(std::move(state)) {}

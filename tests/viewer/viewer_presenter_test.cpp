@@ -88,9 +88,13 @@ class CliPresenter : public ViewerFixture {
         device_.emplace(std::move(*made));
         driver.get_proc = std::exchange(device_->context().vk.GetDeviceProcAddr, get_proc);
         // At once: what waits for a display is no part of these tests.
-        Result<window::Presenter> presenter = window::Presenter::create(
-            *device_, {.presentation = window::Presentation::Immediate,
-                       .make_surface = [this](VkInstance instance) { return window_->make_surface(instance); }});
+        Result<window::Presenter> presenter =
+            window::Presenter::create(*device_, {.presentation = window::Presentation::Immediate,
+                                                 .make_surface = [this](VkInstance instance) -> Result<VkSurfaceKHR> {
+                                                     if (std::exchange(has_no_surface_, false))
+                                                         return machine_error("there is no surface");
+                                                     return window_->make_surface(instance);
+                                                 }});
         ASSERT_TRUE(presenter) << presenter.error().text;
         presenter_.emplace(std::move(*presenter));
         show(4);
@@ -125,6 +129,7 @@ class CliPresenter : public ViewerFixture {
     [[nodiscard]] const window::PresenterCounters& counters() const { return presenter_->counters(); }
 
     std::string log_;
+    bool has_no_surface_ = false;  ///< the next that is made cannot be
     std::optional<window::Window> window_;
     std::optional<Device> device_;
     std::optional<window::Presenter> presenter_;
@@ -152,6 +157,16 @@ TEST_F(CliPresenter, MakesALostSurfaceAgain) {
         EXPECT_EQ(counters().swapchains, before.swapchains + 1);
         EXPECT_EQ(swapchains, 1);
     }
+}
+
+TEST_F(CliPresenter, TriesAgainToMakeALostSurface) {
+    to_acquire.push_back(VK_ERROR_SURFACE_LOST_KHR);
+    has_no_surface_ = true;
+    const auto frame = presenter_->begin(window_->extent());
+    ASSERT_FALSE(frame);
+    EXPECT_EQ(frame.error().text, "there is no surface");
+    show(8);
+    EXPECT_EQ(swapchains, 1);
 }
 
 TEST_F(CliPresenter, KeepsFewWhereNothingCanBeShownForLong) {
