@@ -94,16 +94,18 @@ inline bool is_harmless(const failing::Failed& call) {
     if (call.name == "vkWaitForFences") return call.result != VK_ERROR_DEVICE_LOST;
     if (call.name == "vkAllocateMemory" || call.name == "vkMapMemory") return !device().info().is_software;
     return call.name == "vkSetDebugUtilsObjectNameEXT" || call.name == "vkGetPipelineCacheData" ||
-           call.name == "vkGetQueryPoolResults" || call.name == "vkDeviceWaitIdle";
+           call.name == "vkGetQueryPoolResults" || call.name == "vkDeviceWaitIdle" ||
+           call.name == "vkGetSemaphoreCounterValue" || call.result == VK_ERROR_OUT_OF_DATE_KHR ||
+           call.result == VK_ERROR_SURFACE_LOST_KHR;
 }
 
 struct Points {
     std::size_t calls = 0, tried = 0;
 };
 
-/// All points, or `most` of them by `seed`.
-inline Points try_each_call(const Scenario& scenario, std::size_t most = ~std::size_t{0}, std::uint32_t seed = 1) {
-    Device& plain = device();
+/// All points, or `most` of them by `seed`. `plain`: what the attempts' devices are of.
+inline Points try_each_call(const Scenario& scenario, std::size_t most = ~std::size_t{0}, std::uint32_t seed = 1,
+                            Device& plain = device()) {
     const std::uint64_t messages = plain.validation_messages();
     const auto run = [&](std::uint64_t number, std::size_t error, Attempt& attempt) {
         failing::arm(number, error);

@@ -141,7 +141,7 @@ bool has(std::string_view name, std::string_view part) { return name.find(part) 
 
 template <auto member>
 struct Replaced;
-template <class Back, class... Args, Back (VKAPI_PTR* Dispatch::*member)(Args...)>
+template <class Owner, class Back, class... Args, Back (VKAPI_PTR* Owner::*member)(Args...)>
 struct Replaced<member> {
     static inline PFN_vkVoidFunction real = nullptr;
     static inline Row row;
@@ -157,6 +157,8 @@ struct Replaced<member> {
             if (const VkResult error = take_failure(row); error != VK_SUCCESS) {
                 // What was begun on a device that is lost has an end.
                 if (error == VK_ERROR_DEVICE_LOST && has(row.name, "Wait")) static_cast<void>(function(args...));
+                // A picture that comes too late for its window is taken back all the same.
+                if (error == VK_ERROR_OUT_OF_DATE_KHR && has(row.name, "Present")) static_cast<void>(function(args...));
                 if (makes) spoil(out, row.name, count);
                 if (has(row.name, "vkEnumerate")) spoil_count(all);
                 return error;
@@ -303,12 +305,57 @@ void add_commands(Table& all) {
     add<&Dispatch::CmdEndDebugUtilsLabelEXT>(all, "vkCmdEndDebugUtilsLabelEXT");
 }
 
+/// What only a window calls.
+struct WindowFunctions {
+    PFN_vkGetPhysicalDeviceSurfaceSupportKHR GetPhysicalDeviceSurfaceSupportKHR;
+    PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR GetPhysicalDeviceSurfaceCapabilitiesKHR;
+    PFN_vkGetPhysicalDeviceSurfaceFormatsKHR GetPhysicalDeviceSurfaceFormatsKHR;
+    PFN_vkGetPhysicalDeviceSurfacePresentModesKHR GetPhysicalDeviceSurfacePresentModesKHR;
+    PFN_vkCreateSwapchainKHR CreateSwapchainKHR;
+    PFN_vkDestroySwapchainKHR DestroySwapchainKHR;
+    PFN_vkGetSwapchainImagesKHR GetSwapchainImagesKHR;
+    PFN_vkAcquireNextImageKHR AcquireNextImageKHR;
+    PFN_vkQueuePresentKHR QueuePresentKHR;
+    PFN_vkCreateSemaphore CreateSemaphore;
+    PFN_vkDestroySemaphore DestroySemaphore;
+    PFN_vkWaitSemaphores WaitSemaphores;
+    PFN_vkGetSemaphoreCounterValue GetSemaphoreCounterValue;
+};
+
+void add_window(Table& all) {
+    using Of = WindowFunctions;
+    const std::vector out_of_memory{VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY};
+    const auto or_also = [&](std::vector<VkResult> others) {
+        others.insert(others.end(), out_of_memory.begin(), out_of_memory.end());
+        return others;
+    };
+    const std::vector no_surface = or_also({VK_ERROR_SURFACE_LOST_KHR});
+    const std::vector lost = or_also({VK_ERROR_DEVICE_LOST});
+    const std::vector shown = or_also({VK_ERROR_DEVICE_LOST, VK_ERROR_OUT_OF_DATE_KHR, VK_ERROR_SURFACE_LOST_KHR});
+    add<&Of::GetPhysicalDeviceSurfaceSupportKHR>(all, "vkGetPhysicalDeviceSurfaceSupportKHR", no_surface);
+    add<&Of::GetPhysicalDeviceSurfaceCapabilitiesKHR>(all, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR", no_surface);
+    add<&Of::GetPhysicalDeviceSurfaceFormatsKHR>(all, "vkGetPhysicalDeviceSurfaceFormatsKHR", no_surface);
+    add<&Of::GetPhysicalDeviceSurfacePresentModesKHR>(all, "vkGetPhysicalDeviceSurfacePresentModesKHR", no_surface);
+    add<&Of::CreateSwapchainKHR>(all, "vkCreateSwapchainKHR",
+                                 or_also({VK_ERROR_DEVICE_LOST, VK_ERROR_SURFACE_LOST_KHR,
+                                          VK_ERROR_NATIVE_WINDOW_IN_USE_KHR, VK_ERROR_INITIALIZATION_FAILED}));
+    add<&Of::DestroySwapchainKHR>(all, "vkDestroySwapchainKHR");
+    add<&Of::GetSwapchainImagesKHR>(all, "vkGetSwapchainImagesKHR", out_of_memory);
+    add<&Of::AcquireNextImageKHR>(all, "vkAcquireNextImageKHR", shown);
+    add<&Of::QueuePresentKHR>(all, "vkQueuePresentKHR", shown);
+    add<&Of::CreateSemaphore>(all, "vkCreateSemaphore", out_of_memory);
+    add<&Of::DestroySemaphore>(all, "vkDestroySemaphore");
+    add<&Of::WaitSemaphores>(all, "vkWaitSemaphores", lost);
+    add<&Of::GetSemaphoreCounterValue>(all, "vkGetSemaphoreCounterValue", lost);
+}
+
 const Table& table() {
     static const Table all = [] {
         Table out;
         add_before_devices(out);
         add_objects(out);
         add_commands(out);
+        add_window(out);
         return out;
     }();
     return all;
