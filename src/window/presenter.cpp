@@ -10,6 +10,7 @@
 
 #include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
+#include "window/surface_functions.hpp"
 
 namespace darkroom::window {
 
@@ -20,56 +21,6 @@ constexpr std::uint64_t forever = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t most_retired = 8;
 /// Of one attempt to get an image: a surface that nobody looks at may give none.
 constexpr std::uint64_t patience = 100'000'000;  // nanoseconds
-
-/// The functions that the library itself does not call.
-struct Functions {
-    PFN_vkGetPhysicalDeviceSurfaceSupportKHR GetPhysicalDeviceSurfaceSupportKHR = nullptr;
-    PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR GetPhysicalDeviceSurfaceCapabilitiesKHR = nullptr;
-    PFN_vkGetPhysicalDeviceSurfaceFormatsKHR GetPhysicalDeviceSurfaceFormatsKHR = nullptr;
-    PFN_vkGetPhysicalDeviceSurfacePresentModesKHR GetPhysicalDeviceSurfacePresentModesKHR = nullptr;
-    PFN_vkDestroySurfaceKHR DestroySurfaceKHR = nullptr;
-    PFN_vkCreateSwapchainKHR CreateSwapchainKHR = nullptr;
-    PFN_vkDestroySwapchainKHR DestroySwapchainKHR = nullptr;
-    PFN_vkGetSwapchainImagesKHR GetSwapchainImagesKHR = nullptr;
-    PFN_vkAcquireNextImageKHR AcquireNextImageKHR = nullptr;
-    PFN_vkQueuePresentKHR QueuePresentKHR = nullptr;
-    PFN_vkCreateSemaphore CreateSemaphore = nullptr;
-    PFN_vkDestroySemaphore DestroySemaphore = nullptr;
-    PFN_vkWaitSemaphores WaitSemaphores = nullptr;
-    PFN_vkGetSemaphoreCounterValue GetSemaphoreCounterValue = nullptr;
-    PFN_vkSetHdrMetadataEXT SetHdrMetadataEXT = nullptr;  ///< of VK_EXT_hdr_metadata; null: there is none
-
-    [[nodiscard]] bool load(const gpu::Context& context) {
-        bool is_complete = true;
-        const auto of_instance = [&](auto& function, const char* name) {
-            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-                context.vk.GetInstanceProcAddr(context.instance, name));
-            is_complete = is_complete && function != nullptr;
-        };
-        const auto of_device = [&](auto& function, const char* name) {
-            function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-                context.vk.GetDeviceProcAddr(context.device, name));
-            is_complete = is_complete && function != nullptr;
-        };
-        of_instance(GetPhysicalDeviceSurfaceSupportKHR, "vkGetPhysicalDeviceSurfaceSupportKHR");
-        of_instance(GetPhysicalDeviceSurfaceCapabilitiesKHR, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
-        of_instance(GetPhysicalDeviceSurfaceFormatsKHR, "vkGetPhysicalDeviceSurfaceFormatsKHR");
-        of_instance(GetPhysicalDeviceSurfacePresentModesKHR, "vkGetPhysicalDeviceSurfacePresentModesKHR");
-        of_instance(DestroySurfaceKHR, "vkDestroySurfaceKHR");
-        of_device(CreateSwapchainKHR, "vkCreateSwapchainKHR");
-        of_device(DestroySwapchainKHR, "vkDestroySwapchainKHR");
-        of_device(GetSwapchainImagesKHR, "vkGetSwapchainImagesKHR");
-        of_device(AcquireNextImageKHR, "vkAcquireNextImageKHR");
-        of_device(QueuePresentKHR, "vkQueuePresentKHR");
-        of_device(CreateSemaphore, "vkCreateSemaphore");
-        of_device(DestroySemaphore, "vkDestroySemaphore");
-        of_device(WaitSemaphores, "vkWaitSemaphores");
-        of_device(GetSemaphoreCounterValue, "vkGetSemaphoreCounterValue");
-        SetHdrMetadataEXT = reinterpret_cast<PFN_vkSetHdrMetadataEXT>(
-            context.vk.GetDeviceProcAddr(context.device, "vkSetHdrMetadataEXT"));
-        return is_complete;
-    }
-};
 
 VkPresentModeKHR mode_of(Presentation presentation) {
     switch (presentation) {
@@ -143,7 +94,7 @@ struct Presenter::State {
 
     std::shared_ptr<gpu::Context> context;
     PresenterDesc desc;
-    Functions vk;
+    SurfaceFunctions vk;
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     VkSurfaceFormatKHR format{};
     ColorState color = srgb_color;
