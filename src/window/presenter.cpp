@@ -79,6 +79,7 @@ struct Presenter::State {
     void retire();
     void destroy(Swapchain& swapchain);
     void free_retired();
+    void wait_idle() const;
     void free_all_retired();
     void drop_frame();
     Result<> replace_surface();
@@ -116,7 +117,7 @@ struct Presenter::State {
 };
 
 Presenter::State::~State() {
-    if (context->device != VK_NULL_HANDLE && finished != VK_NULL_HANDLE) context->vk.DeviceWaitIdle(context->device);
+    if (context->device != VK_NULL_HANDLE && finished != VK_NULL_HANDLE) wait_idle();
     for (Retired& old : retired) destroy(old.swapchain);
     destroy(swapchain);
     for (const FrameSlot& slot : slots) {
@@ -279,11 +280,15 @@ void Presenter::State::free_retired() {
     counters.retired = retired.size();
 }
 
+// Whatever runs uses what goes next, so a wait that lacks memory is tried once more.
+void Presenter::State::wait_idle() const {
+    const std::lock_guard lock(context->queue_mutex);
+    const VkResult waited = context->vk.DeviceWaitIdle(context->device);
+    if (waited != VK_SUCCESS && waited != VK_ERROR_DEVICE_LOST) context->vk.DeviceWaitIdle(context->device);
+}
+
 void Presenter::State::free_all_retired() {
-    {
-        const std::lock_guard lock(context->queue_mutex);
-        context->vk.DeviceWaitIdle(context->device);
-    }
+    wait_idle();
     for (Retired& old : retired) destroy(old.swapchain);
     retired.clear();
 }

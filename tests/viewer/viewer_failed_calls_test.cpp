@@ -30,6 +30,8 @@ class CliFailedPresenting : public ViewerFixture {
                                               .device_extensions = extensions});
         ASSERT_TRUE(made) << made.error().text;
         plain_.emplace(std::move(*made));
+        if (plain_->info().name.find("SwiftShader") != std::string::npos)
+            GTEST_SKIP() << "hundreds of this driver's surfaces end the program by an error of X about shared memory";
     }
     void TearDown() override {
         plain_.reset();
