@@ -39,18 +39,46 @@ inline std::uint32_t film_grain_number(const FilmGrain& grain, std::uint64_t fra
     return grain.animated ? static_cast<std::uint32_t>(frame_index & 0xFFFF) : 0u;
 }
 
-/// What moves the tile from cell to cell and from frame to frame, as two numbers: PCG in two dimensions (Jarzynski and
-/// Olano, "Hash Functions for GPU Rendering", 2020).
-inline std::array<std::uint32_t, 2> film_grain_hash(std::uint32_t x, std::uint32_t y) {
-    x = x * 1664525u + 1013904223u;
-    y = y * 1664525u + 1013904223u;
-    for (int round = 0; round < 2; ++round) {
-        x += y * 1664525u;
-        y += x * 1664525u;
-        x ^= x >> 16u;
-        y ^= y >> 16u;
+/// PCG in three dimensions: Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020.
+inline std::array<std::uint32_t, 3> film_grain_hash(std::array<std::uint32_t, 3> value) {
+    auto& [x, y, z] = value;
+    for (std::uint32_t& number : value) number = number * 1664525u + 1013904223u;
+    const auto mix = [&] {
+        x += y * z;
+        y += z * x;
+        z += x * y;
+    };
+    mix();
+    for (std::uint32_t& number : value) number ^= number >> 16u;
+    mix();
+    return value;
+}
+
+/// Side of the triangles at whose corners the tile begins anew, in texels.
+inline constexpr double film_grain_lattice = 64;
+struct FilmGrainCorner {
+    double weight = 0;
+    std::array<std::uint32_t, 2> shift{};
+};
+/// Heitz and Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending Operator", 2018, section
+/// 4. The squares of the weights have a sum of 1, which keeps the deviation. The frame's number is a dimension of the
+/// hash: added to a place it would make each frame the one before, moved.
+inline std::array<FilmGrainCorner, 3> film_grain_corners(double u, double v, std::uint32_t number) {
+    // In steps along two sides of a triangle, one of which is level.
+    const double down = v / film_grain_lattice / std::sqrt(0.75), across = u / film_grain_lattice - down / 2;
+    const double column = std::floor(across), row = std::floor(down), x = across - column, y = down - row;
+    const bool is_upper = x + y > 1;
+    const std::array<double, 3> shares = is_upper ? std::array{x + y - 1, 1 - y, 1 - x} : std::array{1 - x - y, x, y};
+    constexpr std::array<std::array<double, 2>, 3> lower{{{0, 0}, {1, 0}, {0, 1}}}, upper{{{1, 1}, {1, 0}, {0, 1}}};
+    const double length = std::hypot(shares[0], shares[1], shares[2]);
+    std::array<FilmGrainCorner, 3> out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto [dx, dy] = (is_upper ? upper : lower)[i];
+        const auto whole = [](double place) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(place)); };
+        const auto hash = film_grain_hash({whole(column + dx), whole(row + dy), number});
+        out[i] = {shares[i] / length, {hash[0] & (film_grain_tile_size - 1), hash[1] & (film_grain_tile_size - 1)}};
     }
-    return {x, y};
+    return out;
 }
 
 /// Red and blue read the tile so many texels beside green.
@@ -86,14 +114,16 @@ inline ReferenceImage film_grain_reference(const void* parameters, const Referen
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const double u = (x + 0.5) * double{frame.texels_a_pixel}, v = (y + 0.5) * double{frame.texels_a_pixel};
-            const double column = std::floor(u / film_grain_tile_size), row = std::floor(v / film_grain_tile_size);
-            const auto shift =
-                film_grain_hash(static_cast<std::uint32_t>(column) + number, static_cast<std::uint32_t>(row));
-            const double start_x = u - column * film_grain_tile_size + (shift[0] & (film_grain_tile_size - 1));
-            const double start_y = v - row * film_grain_tile_size + (shift[1] & (film_grain_tile_size - 1));
+            const auto corners = film_grain_corners(u, v, number);
             const auto own = [&](std::size_t channel) {
                 const auto [dx, dy] = film_grain_beside[channel];
-                return film_grain_texel_reference(tile, start_x + dx, start_y + dy);
+                std::array<double, 3> tones{};
+                for (const FilmGrainCorner& corner : corners) {
+                    const auto texel =
+                        film_grain_texel_reference(tile, u + dx + corner.shift[0], v + dy + corner.shift[1]);
+                    for (std::size_t tone = 0; tone < 3; ++tone) tones[tone] += corner.weight * texel[tone];
+                }
+                return tones;
             };
             const auto shared = own(1);
             constexpr double Rgba::*channels[] = {&Rgba::r, &Rgba::g, &Rgba::b};
