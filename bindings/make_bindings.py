@@ -10,8 +10,8 @@ import sys
 
 from api import Api
 
-FILES = {"python": "darkroom_ctypes.py", "rust": "darkroom.rs", "csharp": "Darkroom.cs", "zig": "darkroom.zig",
-         "odin": "darkroom.odin"}
+FILES = {"c_loader": "include/darkroom/darkroom_load.h", "python": "darkroom_ctypes.py", "rust": "darkroom.rs",
+         "csharp": "Darkroom.cs", "zig": "darkroom.zig", "odin": "darkroom.odin"}
 
 
 def main(arguments):
@@ -20,9 +20,9 @@ def main(arguments):
         print(f"usage: make_bindings.py SOURCE FOLDER [{'|'.join(FILES)}...]", file=sys.stderr)
         return 1
     api = Api.read(arguments[0])
-    os.makedirs(arguments[1], exist_ok=True)
     for language in languages:
         path = os.path.join(arguments[1], FILES[language])
+        os.makedirs(os.path.dirname(path), exist_ok=True)
         # Whole or not at all.
         with open(path + ".part", "w", encoding="utf-8") as file:
             file.write(importlib.import_module(language).write(api))

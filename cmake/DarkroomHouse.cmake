@@ -6,7 +6,7 @@
 # What only helps to build or to test what is drawn; so does what an effect brings.
 set(DARKROOM_HOUSE_HELPERS darkroom_options darkroom_fmt darkroom_shaderc darkroom_no_glsl darkroom_static darkroom_headers_alone
   darkroom_count_memory darkroom_hold_back darkroom_lose_device darkroom_refuse_threads darkroom_baked_host
-  darkroom_baked_host_without darkroom_without_compiler)
+  darkroom_baked_host_without darkroom_without_compiler darkroom_null_instance)
 
 function(darkroom_house_targets folder out)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)

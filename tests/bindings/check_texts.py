@@ -50,6 +50,9 @@ def main():
         words = set(re.findall(r"[A-Za-z_][A-Za-z0-9_]*", code))
         # An alias is its own type in Python, a list of numbers knows it as one.
         left_out = {row["name"] for row in api.aliases} if language == "python" else set()
+        if language == "c_loader":
+            # It includes the header, which declares the rest.
+            left_out = names - {function.name for function in api.functions}
         faults += [f"{file} has no {name}" for name in sorted(names - left_out - words)]
     for language in sorted(UNTESTED):
         used = set(re.findall(r"\b(?:darkroom_|DARKROOM_|Darkroom)\w+", "".join(examples_of(language))))

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_null_calls.py BINDINGS SOURCE OUT: a program in C that calls every function of darkroom.h with nothing: with
-null pointers and zeroes, which has to be an error or to do nothing, and with zeroed memory and real objects, which must
-not crash. An error is one line that begins with the function's name."""
+"""make_null_calls.py BINDINGS SOURCE OUT [null_instance]: a program in C that calls every function of darkroom.h with
+nothing: with null pointers and zeroes, which has to be an error or to do nothing, and with zeroed memory and real objects,
+which must not crash. An error is one line that begins with the function's name. `null_instance`: it calls those of
+darkroom_load.h where there is no library, which have to be no error, and to give nothing."""
 
 import sys
 
@@ -34,6 +35,29 @@ static union {
 static void* zeroed(int argument) {
     memset(&zeroes[argument], 0, sizeof zeroes[argument]);
     return &zeroes[argument];
+}
+"""
+
+NULL_INSTANCE = r"""
+#include <darkroom/darkroom_load.h>
+
+static int faults = 0, said = 0;
+static void fault(const char* function, const char* what) {
+    printf("%s: %s\n", function, what);
+    ++faults;
+}
+static void say(void* user, const char* text) {
+    (void)user;
+    said += strstr(text, "/nowhere/libdarkroom") != NULL ? 1 : 100;
+}
+/* What a pointer may point to, with something in it. */
+static union {
+    uint64_t aligned;
+    char bytes[65536];
+} memory[16];
+static void* filled(int argument) {
+    memset(&memory[argument], 0x5a, sizeof memory[argument]);
+    return &memory[argument];
 }
 """
 
@@ -113,9 +137,46 @@ def write(api):
                   f'    printf("{len(api.functions)} functions, %d faults\\n", faults);\n    return faults != 0;\n}}\n')
 
 
+def null_instance_call(api, function):
+    """With nulls, and with memory: what is given there is a null object, no elements, or a text."""
+    name = f'"{function.name}"'
+    out = ""
+    for is_filled in (False, True):
+        arguments = ", ".join(f"filled({i})" if is_filled and parameter.type.pointers else argument(api, parameter, i, "null")
+                              for i, parameter in enumerate(function.parameters))
+        expression = f"darkroom.{function.short_name()}({arguments})"
+        if function.can_fail:
+            out += f'    if ({expression} != DARKROOM_OK) fault({name}, "it is an error");\n'
+        elif function.result.is_void():
+            out += f"    {expression};\n"
+        else:
+            is_text = function.result.is_text() and "index" not in [one.name for one in function.parameters]
+            out += f'    if ({"!" if is_text else ""}{expression}) fault({name}, "it returns something else");\n'
+    for i, parameter in enumerate(function.parameters):
+        if parameter.name == "count" and parameter.type.pointers == ["mutable"]:
+            given = f"*(uint32_t*)(void*)memory[{i}].bytes != 0"
+        elif parameter.type.pointers == ["mutable"] and api.kinds[parameter.type.name] == "handle":
+            given = f"*({parameter.type.name}*)(void*)memory[{i}].bytes != NULL"
+        elif parameter.type.name == "char" and parameter.type.pointers == ["const", "mutable"]:
+            given = f"**(const char**)(void*)memory[{i}].bytes != 0"
+        else:
+            continue
+        out += f'    if ({given}) fault({name}, "it gives something in {parameter.name}");\n'
+    return out
+
+
+def write_null_instance(api):
+    return (NULL_INSTANCE + "int main(void) {\n"
+            "    const DarkroomInstance darkroom = darkroom_load(\"/nowhere/libdarkroom\", say, NULL);\n" +
+            "".join(null_instance_call(api, function) for function in api.functions) +
+            '    if (!darkroom.is_null || darkroom.reason != darkroom.error()) fault("darkroom_load", "there is a library");\n'
+            '    if (said != 1) fault("darkroom_load", "it was not said once");\n'
+            f'    printf("{len(api.functions)} functions, %d faults\\n", faults);\n    return faults != 0;\n}}\n')
+
+
 if __name__ == "__main__":
     sys.path.insert(0, sys.argv[1])
     from api import Api
 
     with open(sys.argv[3], "w", encoding="utf-8") as file:
-        file.write(write(Api.read(sys.argv[2])))
+        file.write((write_null_instance if sys.argv[4:] == ["null_instance"] else write)(Api.read(sys.argv[2])))

@@ -1,11 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# c_header.sh TREE CC CXX: the header of the C interface compiles alone as every C and C++ that hosts are written in, without
-# a warning; by clang, too, where it is there.
+# c_header.sh TREE CC CXX [BINDINGS]: the header of the C interface, and the one that loads it, of BINDINGS, compile alone as
+# every C and C++ that hosts are written in, without a warning; by clang, too, where it is there.
 set -euo pipefail
-tree=$1 cc=$2 cxx=$3
-strict=(-pedantic -Wall -Wextra -Werror -fsyntax-only "-I$tree/include")
+tree=$1 cc=$2 cxx=$3 bindings=${4:-}
+strict=(-pedantic -Wall -Wextra -Wshadow -Wconversion -Werror -fsyntax-only "-I$tree/include")
 include='#include <darkroom/darkroom.h>'
+if [[ -n $bindings ]]; then
+    strict+=("-I$bindings/include")
+    include='#include <darkroom/darkroom_load.h>'
+fi
 compilers=("$cc" "$cxx")
 ! command -v clang++ >/dev/null || compilers+=(clang clang++)
 for ((i = 0; i < ${#compilers[@]}; i += 2)); do

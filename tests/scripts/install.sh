@@ -21,7 +21,7 @@ fi
 DESTDIR=$work/stage cmake --install "$build" --prefix /opt/darkroom >"$work/install.log" || { cat "$work/install.log" && exit 1; }
 mv "$work/stage/opt/darkroom" "$work/moved here"
 prefix=$work/moved\ here
-for file in bin/darkroom include/darkroom/darkroom.hpp include/darkroom/effects.hpp share/doc/darkroom/LICENSE \
+for file in bin/darkroom include/darkroom/darkroom.hpp include/darkroom/effects.hpp include/darkroom/darkroom_load.h share/doc/darkroom/LICENSE \
     share/bash-completion/completions/darkroom share/zsh/site-functions/_darkroom \
     share/fish/vendor_completions.d/darkroom.fish share/man/man1/darkroom.1 share/man/man1/darkroom-develop.1 \
     share/darkroom/bindings/{darkroom_ctypes.py,darkroom.rs,Darkroom.cs,darkroom.zig,darkroom.odin}; do

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""page_code.py TREE GENERATED C++COMPILER CCOMPILER: the C++ and the C of pages compile between what a host has, and what
+"""page_code.py TREE GENERATED C++COMPILER CCOMPILER BINDINGS: the C++ and the C of pages compile between what a host has, and what
 pages quote stands in the file that they quote."""
 
 import re
@@ -77,8 +77,7 @@ extern float dt, yaw_degrees, velocity_z;
 extern bool is_on_ground, is_menu_open, is_cut;
 """
 C_HOST = """
-#include <darkroom/darkroom.h>
-#include <stdio.h>
+#include <darkroom/darkroom_load.h>
 void report(const char*);
 extern VkInstance instance;
 extern VkPhysicalDevice gpu;
@@ -131,21 +130,21 @@ def functions_of(tree, page, kind):
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) != 6:
         sys.exit(__doc__)
-    tree, generated, cpp, c = Path(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
+    tree, (generated, cpp, c, bindings) = Path(sys.argv[1]), sys.argv[2:]
     wrong = []
     for page, begin, source in QUOTED:
         quoted = [text for _, text in blocks_of(tree / page) if text.startswith(begin)]
         if not quoted or not is_quoted(quoted[0], (tree / source).read_text()):
             wrong.append(f"{page}: what begins with '{begin}' does not stand in {source}\n")
-    folders = [f"{tree}/include", f"{generated}/include"]
+    folders = [f"{tree}/include", f"{generated}/include", f"{bindings}/include"]
     in_cpp = [block for page in COMPILED for block in functions_of(tree, page, "cpp")]
     in_c = functions_of(tree, "docs/c.md", "c")
     wrong += wrong_of([cpp, "-x", "c++"], ["-std=c++20", "-w"], folders, HOST + "".join(in_cpp) + "}\n")
     wrong += wrong_of([c, "-x", "c"], ["-std=c99", "-Werror=implicit-function-declaration"], folders, C_HOST + "".join(in_c))
-    if len(in_cpp) < 25 or len(in_c) < 3:
-        wrong.append(f"{len(in_cpp)} blocks of C++ and {len(in_c)} of C were found, 25 and 3 and more are there\n")
+    if len(in_cpp) < 25 or len(in_c) < 4:
+        wrong.append(f"{len(in_cpp)} blocks of C++ and {len(in_c)} of C were found, 25 and 4 and more are there\n")
     print("".join(wrong), end="")
     sys.exit(1 if wrong else 0)
 
