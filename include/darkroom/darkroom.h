@@ -11,13 +11,43 @@
 //     darkroom_composer_set_number(composer, bloom, "intensity", 0.08);
 //     darkroom_composer_add(composer, "tonemap", NULL, NULL);
 //
-// Structs. Each begins with its own size (struct_size), so that it may grow; of an array the first one's size is that of
-// all. Everything else may be zero: zero is the default, said where it is not obvious. A member that the library is too
-// old to know has to be zero. Pointers are read during the call, and kept only where it is said.
-// Results. Whatever can fail returns a DarkroomResult; darkroom_error() is its text. What it was to return is then as it
-// was. No exception leaves a function. A null object is an error; to destroy one does nothing.
-// Texts are UTF-8 and end with 0. A text that a function returns is valid until the next call with the same object.
-// Threads are as in C++ (darkroom/composer.hpp, darkroom/device.hpp): an object is used by one thread at a time.
+// The law of every function, where it says nothing else itself.
+//
+// Structs
+//   Each begins with its own size (struct_size), so that it may grow at its end; of an array the first one's size is that
+//   of all. Everything else may be zero: zero is the default, said where it is not obvious. A larger struct than the
+//   library knows is taken if what is beyond is zero.
+//   Of an array that the library fills, `count` is the room before the call, and how many there are after it.
+// Who frees
+//   An object that a call gives (DarkroomDevice, Composer, Plan, Look, CustomEffect, KernelFile, HudInertia) is the
+//   caller's, and ended once by the darkroom_..._destroy() of its kind; null does nothing there. An effect is not ended.
+//   Objects go in any order, because each keeps what it needs of another. A composer goes when the GPU has finished all of
+//   its recordings.
+//   Texts and arrays that a call gives are the library's, and valid until the next call with the same object; those of an
+//   effect as long as it. Nothing is freed by the caller.
+//   What a call gets is read during the call and copied; it may go when the call returns. Kept are the Vulkan objects of
+//   DarkroomAdoptDesc, its `allocator`, and its callbacks with their `user`: they outlive the device and all that was made
+//   on it. The images of a frame outlive its recording. The library ends none of the host's objects.
+// What is an error, and not a crash
+//   A function that can fail returns a DarkroomResult; darkroom_error() is its text. What it was to return is then as it
+//   was. Errors are: a null object or pointer where one is needed, a struct of another size, an
+//   enum's number that is none, a name, handle or parameter that is not there or no longer, a value out of its range, an
+//   image that is not as the stack was compiled, a feature that the host's device lacks, a file that is wrong, no memory.
+//   No exception leaves a function. Where the library finds a mistake of its own, and there alone, it writes one line to
+//   standard error and ends the process (abort).
+//   Not seen, and undefined: an object that was ended, a pointer to something else, a text without its 0, less room than
+//   `count` says, a handle of Vulkan that is none, a format or feature that is otherwise than said, a command buffer that
+//   is not being recorded, recordings that are submitted twice, in another order or to several queues, more unfinished
+//   recordings than frames_in_flight * views, and what breaks the rules of threads and callbacks.
+// Threads
+//   Functions without an object: any thread, at any time. A device and an effect: several threads at once.
+//   Any other object: one thread at a time, whichever that is; several threads may use several composers of one device.
+//   To end an object, no other thread may be in a call with it. darkroom_error() is each thread's own.
+//   The library never waits for the GPU in record, and touches no queue of the host's: to submit is the host's.
+// Callbacks
+//   `warn` and `load_resource` are called by the thread that is in the call; the log and `allocate` and `free` as they
+//   say, by threads of the library, too. None may throw, longjmp out, or wait for a thread that is in a call.
+// Texts are UTF-8 and end with 0.
 
 #include <stddef.h>
 #include <stdint.h>

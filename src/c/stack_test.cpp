@@ -7,6 +7,9 @@
 #include <cstring>
 #include <darkroom/effects.hpp>
 #include <limits>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "c/frame_of.hpp"
 
@@ -366,6 +369,79 @@ TEST(CInterface, StructsOfOtherVersions) {
     EXPECT_EQ(opacity, 0.25f);
     EXPECT_STREQ(darkroom_composer_layer_name(stack.composer, 0), "dusk");
     EXPECT_EQ(darkroom_composer_layer_name(stack.composer, 1), nullptr);
+}
+
+TEST(CInterface, ObjectsGoInAnyOrder) {
+    DarkroomDevice device = nullptr;
+    DarkroomComposer composer = nullptr;
+    DarkroomCustomEffect custom = nullptr;
+    DarkroomLook look = nullptr;
+    ASSERT_EQ(darkroom_device_assumed(DARKROOM_DEVICE_PROFILE_GPU, &device), DARKROOM_OK);
+    ASSERT_EQ(darkroom_composer_create(device, nullptr, &composer), DARKROOM_OK);
+    ASSERT_EQ(darkroom_custom_effect_parse("// @effect plain: Does nothing.\n// @accepts scene_linear\n"
+                                           "vec4 plain(vec4 color, Pixel pixel, Plain parameters) { return color; }\n",
+                                           "plain.glsl", &custom),
+              DARKROOM_OK);
+    std::string name = "mine";
+    auto entry = sized<DarkroomEntryDesc>();
+    entry.name = name.c_str();
+    DarkroomHandle handle = 0;
+    ASSERT_EQ(darkroom_composer_add_effect(composer, darkroom_custom_effect_info(custom), &entry, &handle), DARKROOM_OK);
+    darkroom_device_destroy(device);
+    darkroom_custom_effect_destroy(custom);
+    name = "gone";
+    const DarkroomResult read =
+        darkroom_look_parse("format = 1\n[post_process]\nbloom_enabled = true\n", "look.toml", nullptr, &look);
+    if (read == DARKROOM_OK) {
+        ASSERT_EQ(darkroom_look_apply(look, composer, nullptr), DARKROOM_OK) << darkroom_error();
+        darkroom_look_destroy(look);
+    }
+
+    auto desc = sized<DarkroomCompileDesc>();
+    desc.max_extent = {64, 64};
+    DarkroomPlan plan = nullptr;
+    ASSERT_EQ(darkroom_composer_plan(composer, &desc, &plan), DARKROOM_OK) << darkroom_error();
+    DarkroomEffect effect = nullptr;
+    ASSERT_EQ(darkroom_composer_find(composer, "mine", &handle), DARKROOM_OK) << darkroom_error();
+    ASSERT_EQ(darkroom_composer_info(composer, handle, &effect), DARKROOM_OK);
+    auto info = sized<DarkroomEffectInfo>();
+    ASSERT_EQ(darkroom_effect_info(effect, &info), DARKROOM_OK);
+    EXPECT_STREQ(info.name, "plain");
+    darkroom_composer_destroy(composer);
+    EXPECT_NE(std::strstr(darkroom_plan_text(plan), "mine"), nullptr);
+    darkroom_plan_destroy(plan);
+    darkroom_device_destroy(nullptr);
+    darkroom_plan_destroy(nullptr);
+}
+
+TEST(CInterface, ThreadsShareADeviceAndHaveErrorsOfTheirOwn) {
+    const CStack stack;
+    darkroom_composer_set_number(stack.composer, stack.add("exposure"), "exposure", -1);
+    const std::string own = darkroom_error();
+    ASSERT_NE(own, "");
+    std::vector<std::string> plans(4), errors(4);
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        threads.emplace_back([&, i] {
+            DarkroomComposer composer = nullptr;
+            DarkroomPlan plan = nullptr;
+            auto desc = sized<DarkroomCompileDesc>();
+            desc.max_extent = {640, 360};
+            darkroom_composer_create(stack.device, nullptr, &composer);
+            darkroom_composer_add(composer, "bloom", nullptr, nullptr);
+            if (darkroom_composer_plan(composer, &desc, &plan) == DARKROOM_OK) plans[i] = darkroom_plan_json(plan);
+            darkroom_composer_add(composer, ("none" + std::to_string(i)).c_str(), nullptr, nullptr);
+            errors[i] = darkroom_error();
+            darkroom_plan_destroy(plan);
+            darkroom_composer_destroy(composer);
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(darkroom_error(), own);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        EXPECT_NE(plans[i], "");
+        EXPECT_EQ(plans[i], plans[0]);
+        EXPECT_EQ(errors[i].find("darkroom_composer_add: effect 'none" + std::to_string(i) + "'"), 0u) << errors[i];
+    }
 }
 
 TEST(CInterface, TablesAndPicturesAreCopied) {
