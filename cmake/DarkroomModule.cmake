@@ -6,30 +6,61 @@ enable_testing()
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
+# The files of a room are compiled as one; with -DCMAKE_UNITY_BUILD=OFF each by itself.
+if(NOT DEFINED CMAKE_UNITY_BUILD OR NOT PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_UNITY_BUILD ON)
+endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # What other checkouts of the tree have compiled counts, too: paths below the tree are relative in the cache, and
 # precompiled headers are known by what they were made of (ccache manual, "Precompiled headers"). By the files themselves:
 # preprocessed, a header whose comments changed is the same, but not the one that a precompiled header says it has read.
-find_program(CCACHE ccache)
-if(CCACHE)
+find_program(DARKROOM_CCACHE ccache)
+mark_as_advanced(DARKROOM_CCACHE)
+if(DARKROOM_CCACHE AND (PROJECT_IS_TOP_LEVEL OR NOT CMAKE_CXX_COMPILER_LAUNCHER))
   set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
-    CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${DARKROOM_CCACHE})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
-find_package(PkgConfig REQUIRED)
+# The engine alone does without.
+if(DARKROOM_APPS OR DARKROOM_SCRIPT OR DARKROOM_HUD)
+  find_package(PkgConfig REQUIRED)
+else()
+  find_package(PkgConfig QUIET)
+endif()
 find_package(Threads REQUIRED)
-find_package(fmt REQUIRED)
-find_package(Vulkan REQUIRED)
+# What another project above has brought is taken, whatever by: targets of these names.
+if(NOT TARGET fmt::fmt-header-only)
+  find_package(fmt REQUIRED)
+endif()
+if(NOT TARGET Vulkan::Headers)
+  find_package(Vulkan REQUIRED)
+endif()
+# The header of Result. Debian has it where every compiler looks; where its package tells another folder, all take that.
+if(NOT TARGET tl::expected)
+  find_package(tl-expected QUIET GLOBAL)
+endif()
+set(DARKROOM_EXPECTED $<TARGET_NAME_IF_EXISTS:tl::expected>)
 
 add_library(darkroom_options INTERFACE)
+target_link_libraries(darkroom_options INTERFACE ${DARKROOM_EXPECTED})
 # Of a room that is compiled as one, gcc takes the types of anonymous namespaces for those of a header.
 target_compile_options(darkroom_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+if(PROJECT_IS_TOP_LEVEL)
+  target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    -Wno-missing-field-initializers)
+else()
+  # What another project chose is for its own code: without exceptions the library does not compile, with hidden symbols
+  # it exports none, and where all numbers are taken for finite it accepts what it should refuse.
+  set(CMAKE_CXX_VISIBILITY_PRESET default)
+  set(CMAKE_VISIBILITY_INLINES_HIDDEN OFF)
+  set(CMAKE_CXX_CLANG_TIDY "")
+  target_compile_options(darkroom_options INTERFACE -w -fexceptions -frtti -fno-fast-math)
+endif()
 # Without -fno-trapping-math and -fno-math-errno the CPU references stay scalar; neither changes a result.
-target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  -Wno-missing-field-initializers -fno-trapping-math -fno-math-errno)
+target_compile_options(darkroom_options INTERFACE -fno-trapping-math -fno-math-errno)
 if(WIN32)
   # Windows 10, whose header is to leave the names min and max alone.
   target_compile_definitions(darkroom_options INTERFACE NOMINMAX WIN32_LEAN_AND_MEAN _WIN32_WINNT=0x0A00)
@@ -53,7 +84,7 @@ if(DARKROOM_SANITIZE)
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/tests/keep_libraries.cpp>)
 endif()
 
-set(DARKROOM_GENERATED ${CMAKE_BINARY_DIR}/generated)
+set(DARKROOM_GENERATED ${PROJECT_BINARY_DIR}/generated)
 
 # Sets `code` to the C++ files of the calling folder and of its rooms, and adds their tests to DARKROOM_TEST_SOURCES: what
 # ends with _test.cpp, test_support*.cpp, and rooms whose name begins with test_. What ends with _posix or _windows is
@@ -74,7 +105,7 @@ function(darkroom_sources code)
 endfunction()
 
 # The files of a room (a folder) are compiled as one: most of the time is in the headers, which they share. Sources are
-# all full paths. -DCMAKE_UNITY_BUILD=OFF compiles each by itself.
+# all full paths.
 function(darkroom_compile_by_room target)
   foreach(source ${ARGN})
     cmake_path(GET source PARENT_PATH room)
@@ -95,8 +126,8 @@ function(darkroom_build_program command name source)
     return()
   endif()
   find_program(DARKROOM_BUILD_COMPILER NAMES c++ g++ clang++ REQUIRED)
-  set(program ${CMAKE_BINARY_DIR}/build_programs/${name})
-  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/build_programs)
+  set(program ${PROJECT_BINARY_DIR}/build_programs/${name})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/build_programs)
   add_custom_command(OUTPUT ${program} DEPENDS ${source} VERBATIM
     COMMAND ${DARKROOM_BUILD_COMPILER} -std=c++20 -O2 -o ${program} ${source})
   set(${command} ${program} PARENT_SCOPE)

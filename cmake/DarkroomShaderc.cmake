@@ -1,14 +1,23 @@
 # The target darkroom_shaderc: shaderc, linked in whichever way works here. The shared library of Debian 12 (2023.2) lacks
 # symbols and crashes in code generation, so the static ones come first: alone, then with the parts of glslang and
-# SPIRV-Tools that are installed (newer ones have no libOGLCompiler), and the shared library last.
+# SPIRV-Tools that are installed (newer ones have no libOGLCompiler), and the shared library last. Where DARKROOM_COMPILER
+# is AUTO, it becomes ON or OFF here.
 
 include(CheckCXXSourceCompiles)
 
 find_path(DARKROOM_SHADERC_INCLUDE shaderc/shaderc.hpp)
 find_library(DARKROOM_SHADERC_COMBINED NAMES libshaderc_combined.a)
 find_library(DARKROOM_SHADERC_SHARED NAMES shaderc shaderc_shared)
+macro(darkroom_no_shaderc)
+  if(NOT DARKROOM_COMPILER STREQUAL AUTO)
+    message(FATAL_ERROR ${ARGN})
+  endif()
+  message(STATUS "Darkroom has no compiler of GLSL, its kernels come from baked files: " ${ARGN})
+  set(DARKROOM_COMPILER OFF)
+  return()
+endmacro()
 if(NOT DARKROOM_SHADERC_INCLUDE)
-  message(FATAL_ERROR "shaderc/shaderc.hpp not found: install libshaderc-dev")
+  darkroom_no_shaderc("shaderc/shaderc.hpp not found: install libshaderc-dev")
 endif()
 
 set(DARKROOM_GLSLANG_PARTS)
@@ -51,15 +60,18 @@ if(NOT DARKROOM_SHADERC_LIBRARIES AND DARKROOM_SHADERC_SHARED)
   endif()
 endif()
 if(NOT DARKROOM_SHADERC_LIBRARIES)
-  message(FATAL_ERROR "no shaderc library links: install libshaderc-dev, glslang-dev and spirv-tools")
+  darkroom_no_shaderc("no shaderc library links: install libshaderc-dev, glslang-dev and spirv-tools")
 endif()
+set(DARKROOM_COMPILER ON)
 
 add_library(darkroom_shaderc INTERFACE)
 target_include_directories(darkroom_shaderc SYSTEM INTERFACE ${DARKROOM_SHADERC_INCLUDE})
 target_link_libraries(darkroom_shaderc INTERFACE ${DARKROOM_SHADERC_LIBRARIES} Threads::Threads)
 
 # The SPIR-V cache keeps apart what different compilers made; shaderc cannot be asked for its version at run time.
-pkg_check_modules(DARKROOM_SHADERC_PACKAGE QUIET shaderc)
+if(PkgConfig_FOUND)
+  pkg_check_modules(DARKROOM_SHADERC_PACKAGE QUIET shaderc)
+endif()
 set(DARKROOM_SHADERC_VERSION "${DARKROOM_SHADERC_PACKAGE_VERSION}")
 file(CONFIGURE OUTPUT ${DARKROOM_GENERATED}/include/gpu/shaderc_version.hpp CONTENT
 "// SPDX-License-Identifier: MIT

@@ -36,7 +36,7 @@ function(darkroom_archive target)
   foreach(pattern ${archive_KEEP})
     list(APPEND keep --keep-global-symbol ${pattern})
   endforeach()
-  set(whole ${CMAKE_BINARY_DIR}/${target}.o)
+  set(whole ${PROJECT_BINARY_DIR}/${target}.o)
   add_custom_command(OUTPUT ${whole} COMMAND_EXPAND_LISTS VERBATIM
     COMMAND ${DARKROOM_GNU_LINKER} -r --force-group-allocation -o ${whole} ${objects} --start-group ${libraries} --end-group
     COMMAND ${CMAKE_OBJCOPY} --wildcard ${keep} ${whole}
@@ -57,6 +57,7 @@ endfunction()
 darkroom_archive(darkroom_static OUTPUT darkroom EXPORT static OURS "^_Z(GV)?Z*NK?8darkroom" PARTS ${DARKROOM_PARTS}
   KEEP "_ZN8darkroom*" "_ZNK8darkroom*" "_ZZN8darkroom*" "_ZZNK8darkroom*" "_ZT?N8darkroom*" "_ZGV*N8darkroom*")
 set_target_properties(darkroom_static PROPERTIES LINKER_LANGUAGE CXX)
+target_link_libraries(darkroom_static INTERFACE ${DARKROOM_EXPECTED})
 target_compile_features(darkroom_static INTERFACE cxx_std_20)
 darkroom_archive(darkroom_c_static OUTPUT darkroom_c EXPORT c_static OURS "^darkroom_" KEEP "darkroom_*"
   PARTS ${DARKROOM_PARTS} ${looks} c)
