@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """make_bindings.py SOURCE FOLDER [LANGUAGE...]: writes what languages call Darkroom by into a folder, of SOURCE,
 which is the program `darkroom` or a file of what its `api --json` says (docs/bindings.md). Another language is a module
-beside this one with a function write(api) that returns the text."""
+beside this one with a function write(api) that returns the text, or texts by their places in a folder."""
 
 import importlib
 import os
@@ -11,7 +11,15 @@ import sys
 from api import Api
 
 FILES = {"c_loader": "include/darkroom/darkroom_load.h", "python": "darkroom_ctypes.py", "rust": "darkroom.rs",
-         "csharp": "Darkroom.cs", "zig": "darkroom.zig", "odin": "darkroom.odin"}
+         "rust_crates": "rust", "csharp": "Darkroom.cs", "zig": "darkroom.zig", "odin": "darkroom.odin"}
+
+
+def write(path, text):
+    """Whole or not at all."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path + ".part", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(path + ".part", path)
 
 
 def main(arguments):
@@ -21,12 +29,10 @@ def main(arguments):
         return 1
     api = Api.read(arguments[0])
     for language in languages:
+        written = importlib.import_module(language).write(api)
         path = os.path.join(arguments[1], FILES[language])
-        os.makedirs(os.path.dirname(path), exist_ok=True)
-        # Whole or not at all.
-        with open(path + ".part", "w", encoding="utf-8") as file:
-            file.write(importlib.import_module(language).write(api))
-        os.replace(path + ".part", path)
+        for file, text in ({"": written} if isinstance(written, str) else written).items():
+            write(os.path.join(path, file) if file else path, text)
     return 0
 
 

@@ -62,8 +62,10 @@ def type_of(api, type):
     return f"[{out}; {type.length}]" if type.length and not type.pointers else out
 
 
-def docs(doc, indent):
-    return f"{indent}/// {doc}\n" if doc else ""
+def docs(doc, indent=""):
+    """An interval is no link."""
+    text = doc.replace("[", "\\[").replace("]", "\\]")
+    return f"{indent}/// {text}\n" if doc else ""
 
 
 def parameters_of(api, function):

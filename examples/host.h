@@ -18,6 +18,9 @@ typedef struct Host {
     // What the device is created with, kept for Darkroom, because Vulkan cannot be asked for it later.
     VkPhysicalDeviceVulkan13Features features13;
     VkPhysicalDeviceFeatures2 features;
+    // Of who shows pictures in a window: set before create_device(), which then enables VK_KHR_swapchain, too.
+    const char** instance_extensions;
+    uint32_t instance_extension_count;
 } Host;
 
 typedef struct Image {
@@ -36,7 +39,9 @@ static inline void create_device(Host* host) {
     const VkApplicationInfo application = {
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
     const VkInstanceCreateInfo instance = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                           .pApplicationInfo = &application};
+                                           .pApplicationInfo = &application,
+                                           .enabledExtensionCount = host->instance_extension_count,
+                                           .ppEnabledExtensionNames = host->instance_extensions};
     check(vkCreateInstance(&instance, NULL, &host->instance), "vkCreateInstance");
 
     uint32_t count = 1;
@@ -60,10 +65,13 @@ static inline void create_device(Host* host) {
                                            .queueFamilyIndex = host->family,
                                            .queueCount = 1,
                                            .pQueuePriorities = &priority};
+    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     const VkDeviceCreateInfo device = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                        .pNext = &host->features,
                                        .queueCreateInfoCount = 1,
-                                       .pQueueCreateInfos = &queue};
+                                       .pQueueCreateInfos = &queue,
+                                       .enabledExtensionCount = host->instance_extension_count > 0,
+                                       .ppEnabledExtensionNames = &swapchain};
     check(vkCreateDevice(host->gpu, &device, NULL, &host->device), "vkCreateDevice");
     vkGetDeviceQueue(host->device, host->family, 0, &host->queue);
 }
@@ -87,6 +95,17 @@ static inline VkDeviceMemory allocate(const Host* host, VkMemoryRequirements nee
     return out;
 }
 
+static inline VkImageView create_view(const Host* host, VkImage image, VkFormat format) {
+    const VkImageViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                        .image = image,
+                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                        .format = format,
+                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    VkImageView out = VK_NULL_HANDLE;
+    check(vkCreateImageView(host->device, &info, NULL, &out), "vkCreateImageView");
+    return out;
+}
+
 static inline Image create_image(const Host* host, VkFormat format, VkImageUsageFlags usage) {
     Image out = {0};
     const VkImageCreateInfo image = {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -102,12 +121,7 @@ static inline Image create_image(const Host* host, VkFormat format, VkImageUsage
     vkGetImageMemoryRequirements(host->device, out.image, &needs);
     out.memory = allocate(host, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     check(vkBindImageMemory(host->device, out.image, out.memory, 0), "vkBindImageMemory");
-    const VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                        .image = out.image,
-                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                        .format = format,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    check(vkCreateImageView(host->device, &view, NULL, &out.view), "vkCreateImageView");
+    out.view = create_view(host, out.image, format);
     return out;
 }
 
@@ -175,6 +189,25 @@ static inline void copy_scene(VkCommandBuffer commands, Image hdr, Image target)
     change_layout(commands, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
+static inline VkCommandPool create_pool(const Host* host) {
+    const VkCommandPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                          .queueFamilyIndex = host->family};
+    VkCommandPool out = VK_NULL_HANDLE;
+    check(vkCreateCommandPool(host->device, &info, NULL, &out), "vkCreateCommandPool");
+    return out;
+}
+
+static inline VkCommandBuffer create_commands(const Host* host, VkCommandPool pool) {
+    const VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                              .commandPool = pool,
+                                              .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                              .commandBufferCount = 1};
+    VkCommandBuffer out = VK_NULL_HANDLE;
+    check(vkAllocateCommandBuffers(host->device, &info, &out), "vkAllocateCommandBuffers");
+    return out;
+}
+
 /// What the host copies its pictures to, and how it sends commands.
 typedef struct Output {
     VkBuffer buffer;
@@ -193,14 +226,8 @@ static inline Output create_output(const Host* host) {
     vkGetBufferMemoryRequirements(host->device, out.buffer, &needs);
     out.memory = allocate(host, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
     check(vkBindBufferMemory(host->device, out.buffer, out.memory, 0), "vkBindBufferMemory");
-    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                          .queueFamilyIndex = host->family};
-    check(vkCreateCommandPool(host->device, &pool, NULL, &out.pool), "vkCreateCommandPool");
-    const VkCommandBufferAllocateInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                                  .commandPool = out.pool,
-                                                  .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                                  .commandBufferCount = 1};
-    check(vkAllocateCommandBuffers(host->device, &commands, &out.commands), "vkAllocateCommandBuffers");
+    out.pool = create_pool(host);
+    out.commands = create_commands(host, out.pool);
     return out;
 }
 

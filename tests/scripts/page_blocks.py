@@ -33,6 +33,8 @@ docs/embedding.md       glsl      CliPages.TomlAndGlslAreRead
 docs/embedding.md       sh,cmake  PageBuilds
 docs/errors.md          text      CliPages.WhatTheySayIsPrinted
 docs/farm.md            sh        CliPages.Farm
+docs/hosts.md           c         ExampleSwapchain
+docs/hosts.md           rust,toml ExampleAsh
 docs/hud.md             xml       CliPages.DocumentsControllersAndCameras
 docs/install.md         sh,cmake  PageBuilds
 docs/interface.md       shown     a picture of wires
@@ -85,10 +87,10 @@ def main():
     wrong = [f"{page}: no test is named that takes its blocks of {kind}" for page, kind in sorted(found - taken)]
     wrong += [f"{page}: has no block of {kind}" for page, kind in sorted(taken - found)]
     sources = "".join(path.read_text() for path in [*tree.glob("tests/**/*_test.cpp"), *tree.glob("src/**/*_test.cpp"),
-                                                    tree / "tests/CMakeLists.txt"])
+                                                    tree / "tests/CMakeLists.txt", tree / "examples/CMakeLists.txt"])
     for test in sorted(tests):
         suite, _, name = test.partition(".")
-        form = rf"TEST(_F|_P)?\({suite}, {name}" if name else rf"TEST(_F|_P)?\({suite},|darkroom_add_test\({suite} "
+        form = rf"TEST(_F|_P)?\({suite}, {name}" if name else rf"TEST(_F|_P)?\({suite},|add_test\((NAME )?{suite} "
         language = suite.removeprefix("Bindings") in ("Python", "Rust", "CSharp")
         if not re.search(form, sources) and not (language and "darkroom_add_test(Bindings${language}" in sources):
             wrong.append(f"there is no test {test}")

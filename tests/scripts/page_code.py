@@ -13,6 +13,8 @@ COMPILED = ("README.md", "docs/embedding.md", "docs/interface.md", "docs/looks.m
 QUOTED = (("docs/embedding.md", "darkroom::Device device = check(", "examples/embed.cpp"),
           ("docs/embedding.md", "// Darkroom is told how the images are", "examples/embed.cpp"),
           ("docs/embedding.md", "// @effect duotone", "examples/duotone.glsl"),
+          ("docs/hosts.md", "const DarkroomImage picture", "examples/swapchain.c"),
+          ("docs/hosts.md", "unsafe fn stack", "examples/ash.rs"),
           ("docs/custom_effects.md", "// @effect two_pass_blur", "examples/two_pass_blur.glsl"),
           ("docs/custom_effects.md", "// @effect histogram", "examples/histogram.glsl"),
           ("docs/custom_effects.md", "// @history trail", "examples/feedback_trail.glsl"),
