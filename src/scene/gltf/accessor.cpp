@@ -148,11 +148,10 @@ Result<> Document::add_sparse(const tinygltf::Accessor& accessor, const std::str
     const auto wrong = [&](std::string_view place, std::string_view what) {
         return user_error(fmt::format("{}/sparse/{}: {}", pointer, place, what));
     };
-    const auto take = [&](int index, int offset, std::size_t needed,
+    const auto take = [&](int index, std::size_t start, std::size_t needed,
                           const char* place) -> Result<std::span<const std::byte>> {
         const auto bytes = view(index);
         if (!bytes) return failure(Error(bytes.error()));
-        const auto start = static_cast<std::size_t>(offset);
         if (start > bytes->size() || needed > bytes->size() - start)
             return wrong(place,
                          fmt::format("ends {} bytes beyond bufferView {}", start + needed - bytes->size(), index));

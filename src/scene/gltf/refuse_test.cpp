@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -70,6 +71,20 @@ TEST_F(SceneGltfRefuse, Accessors) {
         test.json["accessors"][0].erase("bufferView");
         test.json["accessors"][0]["count"] = 1000000000;
     });
+}
+
+// 2^32 is no offset of 0, whether the reader keeps 32 bits of it or 64.
+TEST_F(SceneGltfRefuse, OffsetsOfSparseElements) {
+    for (const char* part : {"indices", "values"})
+        for (const std::uint64_t offset : {64ULL, (1ULL << 31U) - 2, 1ULL << 32U, ~1ULL})
+            expect(fmt::format("/accessors/0/sparse/{}", part).c_str(), [&](TestModel& test) {
+                const std::size_t indices = test.view<std::uint16_t>({1}), values = test.view<float>({5, 6, 7});
+                auto& sparse = test.json["accessors"][0]["sparse"];
+                sparse = {{"count", 1},
+                          {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                          {"values", {{"bufferView", values}}}};
+                sparse[part]["byteOffset"] = offset;
+            });
 }
 
 TEST_F(SceneGltfRefuse, WhatIsNamedManyTimesIsHeldOnce) {
