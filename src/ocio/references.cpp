@@ -29,10 +29,18 @@ struct Found {
     std::optional<std::pair<std::size_t, std::string>> wrong;
 };
 
+std::size_t line_of(XML_Parser parser) {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+    return XML_GetCurrentLineNumber64(parser);
+#else
+    return XML_GetCurrentLineNumber(parser);
+#endif
+}
+
 void on_element(void* user, const char* name, const char** attributes) {
     if (lower(name) != "reference") return;
     Found& found = *static_cast<Found*>(user);
-    const std::size_t line = XML_GetCurrentLineNumber(found.parser);
+    const std::size_t line = line_of(found.parser);
     for (; *attributes != nullptr; attributes += 2) {
         const std::string attribute = lower(attributes[0]);
         if (attribute == "path") found.names.emplace_back(line, attributes[1]);
