@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -77,7 +78,7 @@ Header* header_of(void* memory) {
 void* give(std::size_t size, std::size_t alignment, const void* caller) {
     const std::size_t offset = std::max(alignment, sizeof(Header));
     void* const whole = size > PTRDIFF_MAX - offset         ? nullptr
-                        : alignment <= alignof(max_align_t) ? __libc_malloc(size + offset)
+                        : alignment <= alignof(std::max_align_t) ? __libc_malloc(size + offset)
                                                             : __libc_memalign(alignment, size + offset);
     if (whole == nullptr) {
         errno = ENOMEM;

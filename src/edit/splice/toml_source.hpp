@@ -4,6 +4,7 @@
 // nodes begin, which is not enough to put something else there. For texts that toml++ has read without an error.
 
 #include <cstddef>
+#include <cstdint>
 #include <darkroom/result.hpp>
 #include <span>
 #include <string>
