@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include "gpu/device/context.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/theme.hpp"
 
 namespace app {
@@ -39,19 +40,14 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-// Before 1.87 there is no queue: a key that went down and up since the last frame would never have been pressed.
+// Without a queue a key that went down and up since the last frame would never have been pressed.
 void Gui::hold_short_presses() {
-#if IMGUI_VERSION_NUM < 18700
-    ImGuiIO& io = ImGui::GetIO();
+    if (darkroom::panels::has_key_queue) return;
     for (const int key : held_)
-        if (!window_.is_down(key)) io.KeysDown[key] = false;
+        if (!window_.is_down(key)) darkroom::panels::set_backend_key(key, false);
     held_.clear();
-    for (const darkroom::window::KeyPress& press : window_.pressed()) {
-        if (press.key < 0 || press.key >= IM_ARRAYSIZE(io.KeysDown)) continue;
-        io.KeysDown[press.key] = true;
-        held_.push_back(press.key);
-    }
-#endif
+    for (const darkroom::window::KeyPress& press : window_.pressed())
+        if (darkroom::panels::set_backend_key(press.key, true)) held_.push_back(press.key);
 }
 
 Result<> Gui::begin(float scale) {

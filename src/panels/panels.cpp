@@ -11,7 +11,7 @@
 #include "panels/panel_state.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/icons.hpp"
-#include "panels/widgets/text_field.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {

@@ -12,6 +12,7 @@
 
 #include "image/picture/write.hpp"
 #include "panels/test_rasteriser.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {
@@ -30,9 +31,7 @@ class TestGui {
         io.SetClipboardTextFn = [](void* user, const char* text) { *static_cast<std::string*>(user) = text; };
         io.GetClipboardTextFn = [](void* user) { return static_cast<std::string*>(user)->c_str(); };
         io.ClipboardUserData = &clipboard;
-#if IMGUI_VERSION_NUM < 18700
-        for (int key = 0; key < ImGuiKey_COUNT; ++key) io.KeyMap[key] = key;
-#endif
+        use_own_keys();
         apply_theme(scale);
         unsigned char* pixels = nullptr;
         int atlas_width = 0, atlas_height = 0;
@@ -85,15 +84,9 @@ class TestGui {
         release();
     }
     void key(ImGuiKey key) {
-#if IMGUI_VERSION_NUM < 18700
-        ImGui::GetIO().KeysDown[key] = true;
+        send_key(key, true);
         frame();
-        ImGui::GetIO().KeysDown[key] = false;
-#else
-        ImGui::GetIO().AddKeyEvent(key, true);
-        frame();
-        ImGui::GetIO().AddKeyEvent(key, false);
-#endif
+        send_key(key, false);
         frame();
     }
     void type(std::string_view text) {
@@ -102,13 +95,8 @@ class TestGui {
             frame();
         }
     }
-#if IMGUI_VERSION_NUM < 18700
-    void control(bool is_down) { ImGui::GetIO().KeyCtrl = is_down; }
-    void alt(bool is_down) { ImGui::GetIO().KeyAlt = is_down; }
-#else
-    void control(bool is_down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, is_down); }
-    void alt(bool is_down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Alt, is_down); }
-#endif
+    void control(bool is_down) { send_control(is_down); }
+    void alt(bool is_down) { send_alt(is_down); }
     /// Long enough for tooltips, and for a click to be the first.
     void wait() { frame(40); }
 

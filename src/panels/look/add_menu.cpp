@@ -15,6 +15,7 @@
 #include "panels/panel_state.hpp"
 #include "panels/panels.hpp"
 #include "panels/widgets/icons.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/text_field.hpp"
 #include "panels/widgets/value_widgets.hpp"
 
@@ -208,7 +209,7 @@ void draw_add_menu(PanelState& state) {
     if (is_pressed(ImGuiKey_UpArrow) && state.add_row > 0) --state.add_row;
     state.add_row = std::min(state.add_row, wanted.empty() ? 0 : wanted.size() - 1);
     if (is_pressed(ImGuiKey_Escape, false)) ImGui::CloseCurrentPopup();
-    const bool is_taken = is_pressed(ImGuiKey_Enter) || is_pressed(ImGuiKey_KeyPadEnter);
+    const bool is_taken = is_pressed(ImGuiKey_Enter) || is_pressed(keypad_enter);
     const bool takes_files = state.document->options().allows_custom_effects;
     ImGui::BeginChild("effects", {0, takes_files ? -ImGui::GetFrameHeightWithSpacing() : 0});
     draw_effects(state, wanted, row != state.add_row);

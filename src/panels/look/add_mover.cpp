@@ -10,6 +10,7 @@
 #include "looks/look_parts.hpp"
 #include "panels/panel_state.hpp"
 #include "panels/widgets/icons.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/text_field.hpp"
 
 namespace darkroom::panels {

@@ -14,6 +14,7 @@
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "panels/widgets/icons.hpp"
+#include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/text_field.hpp"
 
 namespace darkroom::panels {
@@ -124,7 +125,7 @@ void FileBrowser::press_keys(const std::vector<std::size_t>& seen) {
     if (is_pressed(ImGuiKey_PageDown)) move(10);
     if (is_pressed(ImGuiKey_PageUp)) move(-10);
     // A press goes one folder on, however long it is.
-    if (is_pressed(ImGuiKey_Enter, false) || is_pressed(ImGuiKey_KeyPadEnter, false)) accept();
+    if (is_pressed(ImGuiKey_Enter, false) || is_pressed(keypad_enter, false)) accept();
 }
 
 void FileBrowser::draw_head() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// ImGui's text field over a std::string, which its core leaves to its users, and keys beside it.
+// ImGui's text field over a std::string, which its core leaves to its users.
 
 #include <imgui.h>
 
@@ -18,11 +18,6 @@ inline bool text_field(const char* label, const char* hint, std::string& text, I
     };
     return ImGui::InputTextWithHint(label, hint, text.data(), text.capacity() + 1,
                                     flags | ImGuiInputTextFlags_CallbackResize, grow, &text);
-}
-
-/// Went down in this frame, or is held and repeats.
-inline bool is_pressed(ImGuiKey key, bool repeats = true) {
-    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeats);
 }
 
 }  // namespace darkroom::panels
