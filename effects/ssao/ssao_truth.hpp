@@ -2,17 +2,12 @@
 #pragma once
 // Ambient occlusion by ray tracing (Embree), to judge the effect by. For tests only.
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <cstring>
 #include <memory>
 #include <numbers>
 
 #include "ssao/ssao_scenes.hpp"
+#include "tests/embree.hpp"
 
 namespace darkroom::test {
 
@@ -58,13 +53,7 @@ class OcclusionTruth {
     [[nodiscard]] BoxHit first_hit(const Double3& from, const Double3& direction) const {
         RTCRayHit query{.ray = ray_of(from, direction, std::numeric_limits<float>::infinity()),
                         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-#if RTC_VERSION_MAJOR >= 4
-        rtcIntersect1(scene_.get(), &query);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_.get(), &context, &query);
-#endif
+        intersect(scene_.get(), query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
         Double3 normal = normalized({query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
         const double along = normal[0] * direction[0] + normal[1] * direction[1] + normal[2] * direction[2];
@@ -75,13 +64,7 @@ class OcclusionTruth {
     /// Whether a ray of unit length meets anything before it is so long.
     [[nodiscard]] bool is_met(const Double3& from, const Double3& direction, double distance) const {
         RTCRay query = ray_of(from, direction, static_cast<float>(distance));
-#if RTC_VERSION_MAJOR >= 4
-        rtcOccluded1(scene_.get(), &query);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcOccluded1(scene_.get(), &context, &query);
-#endif
+        occlude(scene_.get(), query);
         return query.tfar < 0;
     }
 

@@ -4,18 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "render/shadow/shadow_test_support.hpp"
+#include "tests/embree.hpp"
 
 namespace darkroom::render {
 
@@ -49,13 +44,7 @@ class RayScene {
                    .dir_z = toward_light.z,
                    .tfar = std::numeric_limits<float>::infinity(),
                    .mask = ~0U};
-#if RTC_VERSION_MAJOR >= 4
-        rtcOccluded1(scene_, &ray);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcOccluded1(scene_, &context, &ray);
-#endif
+        darkroom::test::occlude(scene_, ray);
         return ray.tfar > 0;
     }
 
