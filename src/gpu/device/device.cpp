@@ -22,6 +22,7 @@ namespace darkroom {
 
 namespace {
 
+using namespace std::string_view_literals;
 using gpu::Context;
 using gpu::Dispatch;
 
@@ -35,6 +36,10 @@ bool wants_validation(const DeviceDesc& desc) {
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                           VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user_data) {
+    // Layers since 2024 warn of outputs of a shader that a pass has no image for, which Vulkan allows.
+    constexpr std::array allowed{"Undefined-Value-ShaderOutputNotConsumed"sv, "WARNING-Shader-OutputNotConsumed"sv};
+    const std::string_view id = data->pMessageIdName == nullptr ? "" : data->pMessageIdName;
+    if (std::ranges::any_of(allowed, [&](std::string_view begin) { return id.starts_with(begin); })) return VK_FALSE;
     Context& context = *static_cast<Context*>(user_data);
     ++context.validation_messages;
     const bool is_error = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
