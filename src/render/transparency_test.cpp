@@ -49,6 +49,21 @@ TEST(RenderGpuTransparency, IsThePictureWithoutWhatIsBlended) {
     EXPECT_NE(opaque.at(16, 16), plain_shot.color.at(16, 16)) << "the puff";
 }
 
+// Nor does a driver forget how attachments are blended, where shadows are drawn first, without colours.
+TEST(RenderGpuTransparency, LeavesNormalsAndVelocityAloneBehindShadows) {
+    const auto lit = [](scene::Snapshot snapshot) {
+        scene::LightState& sun = snapshot.lights.emplace_back();
+        sun.direction = sun.light.direction = vec3(0, 0.6F, 0.8F);
+        return snapshot;
+    };
+    Renderer renderer = renderer_for({.extent = transparency_extent});
+    const Shot opaque = shoot(renderer, lit(opaque_scene()));
+    const Shot whole = shoot(renderer, lit(whole_scene()));
+    EXPECT_EQ(whole.normals.rgba, opaque.normals.rgba);
+    EXPECT_EQ(whole.velocity.rgba, opaque.velocity.rgba);
+    EXPECT_NE(whole.color.rgba, opaque.color.rgba);
+}
+
 TEST(RenderGpuTransparency, IsOfOneSampleAndPositionOfLinearLight) {
     for (const RenderDesc& desc :
          {RenderDesc{.extent = transparency_extent, .positions = 2, .has_transparency = true},

@@ -47,6 +47,7 @@ Result<gpu::Pipeline> Casters::create_pipeline(const Variant& variant) const {
         .attributes = input.attributes,
         .sets = {frame_layout_},
         .push_constant_size = sizeof(std::uint32_t),
+        .colors = {{.format = VK_FORMAT_UNDEFINED}},  // see ShadowPass, begin_rendering()
         .depth = shadow_map_format,
         .cull = static_cast<VkCullModeFlags>(variant.is_double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT),
         .front = variant.is_mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE,

@@ -112,7 +112,11 @@ struct ShadowPass::State {
         return out;
     }
 
+    // With one colour attachment, of no image: where a pipeline is bound that has none at all, Mesa's software driver
+    // (lavapipe 25) forgets until the end of the command buffer that each attachment is blended and masked by itself,
+    // and transparent draws would overwrite normals and velocity.
     void begin_rendering(VkCommandBuffer commands, VkImageView layer, VkExtent2D extent) const {
+        const VkRenderingAttachmentInfo no_color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
         const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                               .imageView = layer,
                                               .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
@@ -122,6 +126,8 @@ struct ShadowPass::State {
         const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                    .renderArea = {.extent = extent},
                                    .layerCount = 1,
+                                   .colorAttachmentCount = 1,
+                                   .pColorAttachments = &no_color,
                                    .pDepthAttachment = &depth};
         context->vk.CmdBeginRendering(commands, &info);
     }
