@@ -49,14 +49,16 @@ TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
 }
 
 // A batch system's limit: the signal would end the program, and leave what it had begun.
+// By a command that needs no device: to a software driver's memory, which may be a file without a name, the limit
+// applies, too.
 TEST_F(CliSignal, AFileThatIsTooLargeIsAnErrorAndLeavesNothing) {
-    FrameFile frame;
-    frame.color = Picture(512, 512);
-    ASSERT_TRUE(write_frame(path("in.exr"), frame));
-    const Outcome outcome = run_lines("ulimit -f 64\ndarkroom develop in.exr -o out.exr --compression none");
+    std::string table = "LUT_3D_SIZE 17\n";
+    for (int i = 0; i < 17 * 17 * 17; ++i) table += "0.1 0.2 0.3\n";
+    write("in.cube", table);
+    const Outcome outcome = run_lines("ulimit -f 16\ndarkroom lut convert in.cube -o out.cube");
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err, "darkroom: out.exr: cannot write: File too large\n");
-    EXPECT_EQ(files(), std::vector<std::string>{"in.exr"});
+    EXPECT_EQ(outcome.err, "darkroom: out.cube: cannot write: File too large\n");
+    EXPECT_EQ(files(), std::vector<std::string>{"in.cube"});
 }
 
 }  // namespace
