@@ -12,7 +12,7 @@ die() {
 # What packages.txt names, and what the caller has in `extra_packages`.
 extra_packages=()
 wanted_packages() {
-    sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"
+    sed 's/#.*//' "$root/packages.txt" | awk 'NF { print $1 }'
     [[ ${#extra_packages[@]} == 0 ]] || printf '%s\n' "${extra_packages[@]}"
 }
 
@@ -27,6 +27,23 @@ missing_packages() {
     done
 }
 
+# Ends where a package is older than packages.txt asks for: the one that is installed, or else the one that would be, of
+# which apt knows nothing where it has no lists yet.
+refuse_old_packages() {
+    local name needed version old=
+    local -A found=()
+    while read -r name version; do found[$name]=$version; done < <(wanted_packages |
+        LC_ALL=C xargs apt-cache policy 2>/dev/null | awk '/^[^ ]/ { name = $1; sub(/:$/, "", name) }
+            $1 == "Installed:" { installed = $2 }
+            $1 == "Candidate:" { version = installed == "(none)" ? $2 : installed; if (version != "(none)") print name, version }')
+    while read -r name needed; do
+        version=${found[$name]:-}
+        [[ -z $version ]] || dpkg --compare-versions "$version" ge "$needed" ||
+            old+="${old:+, }$name $version ($needed is needed)"
+    done < <(sed 's/#.*//' "$root/packages.txt" | awk 'NF == 2')
+    [[ -z $old ]] || die "too old here: $old"
+}
+
 # Installs what is missing, but not unasked. Root without a terminal, as in containers, is not asked, since nobody is there
 # to answer; another user without one gets the command to run.
 install_packages() {
@@ -35,6 +52,7 @@ install_packages() {
         return
     fi
     local missing as_root=()
+    refuse_old_packages
     missing=$(missing_packages | xargs)
     [[ -n $missing ]] || return 0
     [[ $(id -u) == 0 ]] || as_root=(sudo)
@@ -58,6 +76,7 @@ install_packages() {
     say "installing them"
     local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
     "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
+    refuse_old_packages
     # Word by word: $missing is a list.
     "${apt[@]}" install -y --no-install-recommends $missing >>"$log" 2>&1 || failed "installing packages"
 }

@@ -30,6 +30,16 @@ cat >"$work/bin/dpkg-query" <<'STUB'
 shift 2
 for name in "$@"; do [[ $name == "${STUB_LACKS:-}" ]] || echo "$name installed"; done
 STUB
+cat >"$work/bin/apt-cache" <<'STUB'
+#!/usr/bin/env bash
+shift
+for name in "$@"; do
+    found=999:1
+    [[ $name != "${STUB_OLD%% *}" ]] || found=${STUB_OLD#* }
+    [[ $name != "${STUB_LACKS:-}" ]] && printf '%s:\n  Installed: %s\n  Candidate: 999:2\n' "$name" "$found" ||
+        printf '%s:\n  Installed: (none)\n  Candidate: %s\n' "$name" "$found"
+done
+STUB
 cat >"$work/bin/apt-get" <<'STUB'
 #!/usr/bin/env bash
 echo "apt-get $*" >>"$STUB_LOG"
@@ -151,6 +161,22 @@ lacking 1 none "$tree/darkroom" a --yes && refused "--yes behind another argumen
 lacking 1 none "$tree/test" --yes -R Bloom && installed "./test --yes"
 [[ $(<"$work/out") == *"-LE ^soak$ -R Bloom" ]] || fail "./test hands --yes on"
 
+# A release whose packages are too old is named in one line, before anything is installed or compiled: by the version that
+# is installed, or the one that would be.
+too_old() {
+    status=0
+    : >"$STUB_LOG"
+    touch "$tree/src/three.cpp"
+    STUB_OLD=$1 STUB_LACKS=${3:-} "$tree/darkroom" --yes >"$work/out" 2>"$work/said" || status=$?
+    [[ $status == 2 && ! -s $STUB_LOG && $(<"$work/said") == "darkroom: too old here: $2" ]] ||
+        fail "too old: $1: $(<"$work/said")"
+}
+too_old 'cmake 3.18.4-2' 'cmake 3.18.4-2 (3.25 is needed)'
+too_old 'g++ 4:11.2.0-1' 'g++ 4:11.2.0-1 (4:12 is needed)'
+too_old 'libfmt-dev 8.1.1+ds1-2' 'libfmt-dev 8.1.1+ds1-2 (9 is needed)' libfmt-dev
+touch "$tree/src/three.cpp"
+STUB_OLD='cmake 3.25.1-1' "$tree/darkroom" >"$work/out" 2>"$work/said" || fail "the oldest version that does: $(<"$work/said")"
+
 # A folder that cannot be written is named, and so is the way out. Root can write everywhere.
 if [[ $EUID != 0 ]]; then
     status=0
@@ -202,7 +228,7 @@ real="$work/a real tree"
 mkdir "$real" "$work/packages"
 cp -r "$tree/darkroom" "$tree/scripts" "$tree/packages.txt" "$real/"
 cp "$work/presets" "$real/CMakePresets.json"
-cp "$work/bin/"{dpkg-query,apt-get,id} "$work/packages/"
+cp "$work/bin/"{dpkg-query,apt-cache,apt-get,id} "$work/packages/"
 cat >"$real/CMakeLists.txt" <<'LISTS'
 cmake_minimum_required(VERSION 3.25)
 project(small NONE)
