@@ -260,25 +260,39 @@ cat >"$work/bin/ctest" <<'STUB'
 printf '%s\n' "100% tests passed" "Total Test time"
 [[ $* != *${STUB_RED:-none}* ]]
 STUB
+printf '#!/usr/bin/env bash\necho "on_release $*" >>"$STUB_LOG"\n[[ $1 != "${STUB_OLD:-}" ]]\n' >"$tree/scripts/on_release"
 export HOME=$work/home
 : >"$STUB_LOG"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run"
 [[ $(grep -c 'preset release .*-DCMAKE_COMPILE_WARNING_AS_ERROR=ON' "$STUB_LOG") == 1 ]] || fail ".ci/run: warnings"
 ! grep -qE -- "-B .*/build --preset" "$STUB_LOG" || fail ".ci/run leaves its flags in build/"
-[[ $(tail -n 3 "$work/out" | xargs) == *"(.ci/more): never on this machine 100% tests passed Total Test time" ]] ||
+[[ $(tail -n 3 "$work/out" | xargs) == *"(.ci/more): clang never on this machine; "*"; testing never on this machine 100% tests passed Total Test time" ]] ||
     fail ".ci/run: closing lines: $(<"$work/out")"
 : >"$STUB_LOG"
 "$tree/.ci/more" >"$work/out" 2>"$work/said" || fail ".ci/more"
 [[ $(grep -oE 'preset (clang|plain|without-compiler|sanitize|release)' "$STUB_LOG" | cut -d' ' -f2 | xargs) == \
     "clang plain without-compiler sanitize release release" ]] ||
     fail ".ci/more: builds"
+[[ $(grep '^on_release' "$STUB_LOG") == "on_release trixie bash -c ./darkroom --yes render "*" && ./test --yes
+on_release testing ./test --yes -N" ]] || fail ".ci/more: releases"
 ! STUB_RED=build-ci-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
-[[ $("$tree/.ci/more" --last) == "last ran "*": passed" ]] || fail ".ci/more --last"
+last=$("$tree/.ci/more" --last)
+[[ $(grep -oE '[a-z-]+ passed [0-9-]+ [0-9:]+ UTC at ' <<<"$last" | wc -l) == 8 ]] || fail ".ci/more --last: $last"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run again"
-grep -q '(.ci/more): last ran .*: passed' "$work/out" || fail ".ci/run says when .ci/more ran"
+grep -qF "(.ci/more): $last" "$work/out" || fail ".ci/run says when .ci/more ran"
 STUB_LACKS=clang "$tree/.ci/more" >"$work/out" 2>"$work/said" </dev/null || fail ".ci/more without clang"
 grep -qE '^apt-get .*install .* clang$' "$STUB_LOG" || fail ".ci/more installs no clang"
 status=0
 STUB_FAILS=1 "$tree/.ci/more" >"$work/out" 2>"$work/said" || status=$?
-[[ $status != 0 && $(tail -n 1 "$work/out") == *": failed: clang plain without-compiler sanitize soak languages" ]] || fail ".ci/more that failed"
+[[ $status != 0 ]] || fail ".ci/more that failed"
+is_last() {
+    [[ $("$tree/.ci/more" --last | grep -oE '[a-z-]+ (passed|failed|never)' | xargs) == "$1" ]] || fail "$2: $("$tree/.ci/more" --last)"
+}
+failed="clang failed plain failed without-compiler failed sanitize failed soak failed languages failed"
+is_last "$failed trixie passed testing passed" ".ci/more that failed"
+# One part alone leaves what is known of the others.
+! STUB_OLD=testing "$tree/.ci/more" testing >"$work/out" 2>"$work/said" || fail ".ci/more testing"
+is_last "$failed trixie passed testing failed" ".ci/more testing"
+! "$tree/.ci/more" woody 2>"$work/said" || fail ".ci/more woody"
+grep -q '^darkroom: woody: no part, which are: clang ' "$work/said" || fail ".ci/more names no parts"
 echo "launcher: all as it should be"
