@@ -34,6 +34,8 @@ docs/embedding.md       sh,cmake  PageBuilds
 docs/errors.md          text      CliPages.WhatTheySayIsPrinted
 docs/farm.md            sh        CliPages.Farm
 docs/hosts.md           c         ExampleSwapchain
+docs/hosts.md           cpp       ExampleVma
+docs/hosts.md           go        ExampleCgo
 docs/hosts.md           rust,toml ExampleAsh
 docs/hud.md             xml       CliPages.DocumentsControllersAndCameras
 docs/install.md         sh,cmake  PageBuilds
