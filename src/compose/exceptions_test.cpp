@@ -93,6 +93,42 @@ TEST_F(ComposeExceptions, OneOnTheWorkerIsAnErrorOfPendingAndThePlanGoesOn) {
     }
 }
 
+// The effect's own function runs before there is any command, so the host may submit what it has.
+TEST_F(ComposeExceptions, OneWhileRecordingRecordsNothing) {
+    static bool throws;
+    static constexpr auto constants = [](const void*, const PassContext&, std::span<PassVector>) {
+        if (throws) throw std::runtime_error("the effect's own words");
+    };
+    EffectInfo info = thrower;
+    info.build = [](PassBuilder& builder) { builder.end_constants(1, constants); };
+    const Host host(test::random_display(8, 8, 3));
+    Composer composer(host.device, {.frames_in_flight = 1});
+    add(composer, "recursive_blend", {{"weight", 0.5}});
+    composer.add(info, nullptr);
+    test::must(composer.compile(host.compile_desc()));
+    throws = false;
+    const ReferenceImage expected = host.run(composer);
+    static std::size_t barriers;
+    gpu::Dispatch& vk = host.device.context().vk;
+    const auto put_barriers = vk.CmdPipelineBarrier2;
+    for (const bool is_first : {true, false}) {
+        if (is_first) test::must(composer.compile(host.compile_desc()));
+        throws = true;
+        barriers = 0;
+        vk.CmdPipelineBarrier2 = [](VkCommandBuffer, const VkDependencyInfo*) { ++barriers; };
+        test::must(gpu::submit_and_wait(host.device.context(), "half a recording", [&](VkCommandBuffer buffer) {
+            const auto recorded = composer.record(buffer, host.frame());
+            ASSERT_FALSE(recorded);
+            EXPECT_NE(recorded.error().text.find("the effect's own words"), std::string::npos);
+        }));
+        vk.CmdPipelineBarrier2 = put_barriers;
+        EXPECT_EQ(barriers, 0u);
+        EXPECT_FALSE(composer.abandon());
+        throws = false;
+        EXPECT_EQ(test::worst_difference(host.run(composer), expected), 0);
+    }
+}
+
 // On a device that only plans, so that no driver and no compiler of others is in the way.
 TEST_F(ComposeExceptions, EveryAllocationOfEveryFunctionMayFail) {
     if (!test::counts_allocations()) GTEST_SKIP() << "this build has its own operator new";

@@ -159,8 +159,7 @@ class Graph {
     [[nodiscard]] Version import(ImportDesc desc);
     [[nodiscard]] Version create(ImageDesc desc);
     /// An image that outlives the frame. `current` starts each frame undefined and must be written; `previous` is what
-    /// the last frame wrote (zero after a reset). Both are ordinary versions; `previous` is only read. A frame in which
-    /// the writer is off leaves the older content: whoever switches it on again resets the history.
+    /// the last frame wrote, zero if it did not write it. Both are ordinary versions; `previous` is only read.
     struct History {
         Version current, previous;
     };

@@ -147,6 +147,8 @@ struct Schedule::State {
     void find_live();
     void find_read_layouts(std::span<const ImportState> imports);
     void walk(std::uint32_t pass);
+    std::uint32_t last_of(std::uint32_t history) const;
+    bool writes_history(std::uint32_t history) const;
     bool mark_histories();
     void start(std::span<const ImportState> imports);
     void want(std::uint32_t slot, MipMask mask, Use use);
@@ -237,6 +239,30 @@ void Schedule::State::walk(std::uint32_t pass) {
     for (std::size_t i = 0; i < desc.reads.size(); ++i) need(reads_of(pass)[i], desc.reads[i].mips);
 }
 
+/// What this frame leaves in a history; none: nothing. What stands in for an image that is not written belongs to its
+/// readers in this frame, not to the next.
+std::uint32_t Schedule::State::last_of(std::uint32_t history) const {
+    std::uint32_t version = solution->final_history_version[history];
+    while (version != none) {
+        const VersionRecord& record = solution->versions[version];
+        if (is_on(record.gate) && !record.is_culled()) break;
+        const bool leaves_older = is_on(record.gate) || record.keeps_content || record.is_partial;
+        version = leaves_older ? record.replaced : none;
+    }
+    return version;
+}
+
+bool Schedule::State::writes_history(std::uint32_t history) const {
+    bool is_written = false;
+    for (std::uint32_t version = last_of(history); version != none; version = solution->versions[version].replaced) {
+        const VersionRecord& record = solution->versions[version];
+        if (record.producer == none || !is_on(record.gate)) continue;
+        if (is_live[record.producer] == 0) return false;
+        is_written = true;
+    }
+    return is_written;
+}
+
 /// A history whose previous image is read needs its current one written. True if that is news.
 bool Schedule::State::mark_histories() {
     bool is_changed = false;
@@ -248,14 +274,7 @@ bool Schedule::State::mark_histories() {
             if (is_history_read[history] != 0) continue;
             is_history_read[history] = 1;
             is_changed = true;
-            // What stands in for an image that is not written belongs to its readers in this frame, not to the next.
-            std::uint32_t final_version = solution->final_history_version[history];
-            while (final_version != none) {
-                const VersionRecord& record = solution->versions[final_version];
-                if (is_on(record.gate) && !record.is_culled()) break;
-                const bool leaves_older = is_on(record.gate) || record.keeps_content || record.is_partial;
-                final_version = leaves_older ? record.replaced : none;
-            }
+            const std::uint32_t final_version = last_of(history);
             if (final_version != none) needed[final_version] |= all_mips(solution->image_of(found).desc.mip_levels);
         }
     }
@@ -441,6 +460,8 @@ std::span<const Step> Schedule::steps() const { return state_->steps; }
 std::span<const Barrier> Schedule::barriers() const { return state_->barriers; }
 std::span<const Barrier> Schedule::final_barriers() const { return state_->final_barriers; }
 bool Schedule::runs(std::uint32_t pass) const { return pass < state_->is_live.size() && state_->is_live[pass] != 0; }
+bool Schedule::reads_history(std::uint32_t history_index) const { return state_->is_history_read[history_index] != 0; }
+bool Schedule::writes_history(std::uint32_t history_index) const { return state_->writes_history(history_index); }
 std::uint32_t Schedule::slot_of(Version version, Version instead) const {
     if (version.index >= state_->resolved.size()) return none;
     const bool has_own = instead.index < state_->resolved.size();

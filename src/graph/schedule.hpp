@@ -66,6 +66,10 @@ class Schedule {
     [[nodiscard]] std::span<const Barrier> final_barriers() const;  ///< after the last step: the host's layouts
     [[nodiscard]] Recording recording() const;
     [[nodiscard]] bool runs(std::uint32_t pass) const;  ///< is this kept pass among the steps?
+    /// Does a pass that runs read what the last frame left in this history?
+    [[nodiscard]] bool reads_history(std::uint32_t history_index) const;
+    /// Do the passes that run leave in it all that the next frame may read?
+    [[nodiscard]] bool writes_history(std::uint32_t history_index) const;
     /// The slot that a reader of `version` gets in this frame, after fall-backs (`instead`: Read::instead). ~0u: the
     /// version was culled, or its producer is off and has no fall-back (then nothing that runs reads it).
     [[nodiscard]] std::uint32_t slot_of(Version version, Version instead = {}) const;

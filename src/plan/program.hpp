@@ -223,7 +223,7 @@ struct Program {
     std::vector<graph::Size> entry_sizes;           ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t>
-        history_entries;  ///< per history of the graph: the entry whose switch resets it; no_entry: none
+        history_entries;  ///< per history of the graph: the entry that is told what it holds; no_entry: none
     /// Per watch: the gate of the pass that copies; -1: the plan has nothing that it names.
     std::vector<std::int32_t> watch_gates;
     std::vector<bool> is_left_out;  ///< per entry

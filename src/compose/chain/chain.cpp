@@ -36,7 +36,22 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     StackProgram& program = *desc_.program;
     program.most_unfinished = std::max(program.most_unfinished, desc_.slots);
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
+    view_index_ = frame.view;
+    is_abandonable_ = false;
     has_missing_kernel_ = false;
+    values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
+    note_watch_states();
+    write_frame_block(frame);
+    lend_images(frame);
+    physical_->prepare(values_.extents(), !camera.is_cut && frame.delta_time > 0, frame.view);
+    physical_->histories(frame.view).staged.camera = frame.camera.view;
+    schedule_->derive(values_.gates(), import_states_, physical_->frame(frame.view));
+    find_histories(frame);
+    for (const graph::Schedule::Step& step : schedule_->steps())
+        if (declared_pass_[step.pass] != program_of().passes.size())
+            prepare_pass(declared_pass_[step.pass], frame, context);
+
+    // Effects have had their say: nothing of what follows fails.
     program.tables->upload(commands, program.recordings);
     program.lit.upload(commands, program.recordings);
     if (Garbage* const staging = program.tables->take_staging(program.recordings, program.most_unfinished)) {
@@ -44,13 +59,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
         worker_.wake();
     }
     value_copies_.begin(slot_);
-    values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
-    note_watch_states();
-    write_frame_block(frame);
-    lend_images(frame);
-    prepare_histories(commands, frame, !camera.is_cut && frame.delta_time > 0);
-    schedule_->derive(values_.gates(), import_states_, physical_->histories(frame.view).recordings);
-
+    physical_->begin(commands, context_.vk, *schedule_, frame.view);
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
     if (is_timed) {
         timed_[slot_].frame_index = frame.frame_index;
@@ -66,14 +75,14 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
             record_value_copies(commands, frame);
             continue;
         }
-        record_pass(commands, declared_pass_[step.pass], frame, context);
+        record_pass(commands, declared_pass_[step.pass]);
         if (is_timed) {
             timed_[slot_].passes.push_back(declared_pass_[step.pass]);
             timers_.mark(commands, slot_, static_cast<std::uint32_t>(timed_[slot_].passes.size()));
         }
     }
     physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
-    physical_->end(frame.view);
+    physical_->end(*schedule_, frame.view);
     ++recordings_;
     ++program.recordings;
     is_abandonable_ = true;
@@ -89,10 +98,7 @@ bool Chain::abandon() {
     desc_.program->tables->take_back(desc_.program->recordings);
     desc_.program->lit.take_back(desc_.program->recordings);
     value_copies_.take_back(slot_);
-    physical_->histories(before_.view_index) = before_.view;
-    for (std::uint32_t i = 0; i < before_.states.size(); ++i)
-        if (graph::HistoryImages* const history = physical_->history(i, before_.view_index))
-            history->state = before_.states[i];
+    physical_->abandon(view_index_);
     return true;
 }
 
@@ -181,31 +187,18 @@ gpu::Region Chain::watched_region(const gpu::Region& whole, const Watched& watch
 }
 
 bool Chain::is_jump(const Frame& frame) {
-    const graph::HistoryView& view = physical_->histories(frame.view);
-    return view.recordings > 0 && is_camera_jump(view.camera, frame.camera);
+    const graph::HistoryView::State& last = physical_->histories(frame.view).now;
+    return last.recordings > 0 && is_camera_jump(last.camera, frame.camera);
 }
 
-/// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
-void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame, bool is_related) {
-    graph::HistoryView& view = physical_->histories(frame.view);
-    before_.view_index = frame.view;
-    before_.view = view;
-    view.camera = frame.camera.view;
-    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
-        graph::HistoryImages* const history = physical_->history(i, frame.view);
-        if (history == nullptr) continue;
-        before_.states[i] = history->state;
-        const std::uint32_t entry = program_of().history_entries[i];
-        const bool is_on = entry == plan::no_entry || values_.is_on(entry);
-        if (!is_related || (is_on && !history->state.was_on)) history->state.needs_reset = true;
-        history->state.was_on = is_on;
-    }
-    physical_->begin(commands, context_.vk, values_.extents(), frame.view);
+/// Which entries find something in each history that they read.
+void Chain::find_histories(const Frame& frame) {
     std::ranges::fill(has_history_, std::uint8_t{1});
-    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
+    for (std::uint32_t i = 0; i < program_of().history_entries.size(); ++i) {
         const std::uint32_t entry = program_of().history_entries[i];
         const graph::HistoryImages* const history = physical_->history(i, frame.view);
-        if (entry != plan::no_entry && history != nullptr && history->state.was_reset) has_history_[entry] = 0;
+        if (entry != plan::no_entry && history != nullptr && schedule_->reads_history(i) && !history->is_valid)
+            has_history_[entry] = 0;
     }
 }
 
@@ -329,7 +322,7 @@ void Chain::fill_custom(const ProgramPass& pass, const PassContext& context, VkE
         fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
 }
 
-void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context) {
+void Chain::prepare_pass(std::uint32_t index, const Frame& frame, const PassContext& context) {
     const ProgramPass& pass = program_of().passes[index];
     std::array<gpu::Binding, gpu::most_images> images;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
@@ -339,12 +332,12 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     if (const auto watch = pass.watch())
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
-    std::array<gpu::Binding, gpu::most_outputs> written;
-    std::size_t output_count = 0;
+    Prepared& prepared = prepared_[index];
+    prepared.output_count = 0;
     pass.for_each_output([&](graph::Version version, std::uint32_t mip_level) {
-        written[output_count++] = bind_slot(schedule_->slot_of(version), mip_level, frame);
+        prepared.outputs[prepared.output_count++] = bind_slot(schedule_->slot_of(version), mip_level, frame);
     });
-    const std::span<const gpu::Binding> outputs(written.data(), output_count);
+    const std::span<const gpu::Binding> outputs(prepared.outputs.data(), prepared.output_count);
     std::array<gpu::Kernel::Block, gpu::most_buffers> blocks;
     for (std::size_t i = 0; i < pass.buffers.size(); ++i) {
         const auto range = physical_->buffer(schedule_->slot_of(pass.buffers[i].version), frame.view);
@@ -358,13 +351,19 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     gpu::write_own_block(
         pass.spec, region, inputs, custom, write_words(pass),
         {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)}, outputs);
-    const gpu::Kernel& kernel = kernel_of(index, region, inputs);
-    const VkDescriptorSet set = updated_set(index, kernel, inputs, outputs, {blocks.data(), pass.buffers.size()});
+    prepared.extent = region.extent;
+    prepared.kernel = &kernel_of(index, region, inputs);
+    prepared.set = updated_set(index, *prepared.kernel, inputs, outputs, {blocks.data(), pass.buffers.size()});
+}
+
+void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index) {
+    const ProgramPass& pass = program_of().passes[index];
+    const Prepared& prepared = prepared_[index];
     gpu::begin_label(context_, commands, pass.name.c_str());
     if (const auto* const compute = pass.as<plan::ComputePass>())
-        kernel.record_groups(commands, set, compute->groups_of(region.extent));
+        prepared.kernel->record_groups(commands, prepared.set, compute->groups_of(prepared.extent));
     else
-        kernel.record(commands, set, outputs);
+        prepared.kernel->record(commands, prepared.set, {prepared.outputs.data(), prepared.output_count});
     gpu::end_label(context_, commands);
 }
 

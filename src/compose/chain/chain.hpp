@@ -70,7 +70,7 @@ class Chain final : public Garbage {
     void note_watch_states();
     [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;
     [[nodiscard]] bool is_jump(const Frame& frame);
-    void prepare_histories(VkCommandBuffer commands, const Frame& frame, bool is_related);
+    void find_histories(const Frame& frame);
     void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
     [[nodiscard]] plan::Shape expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const;
     [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame) const;
@@ -84,7 +84,9 @@ class Chain final : public Garbage {
                                               std::span<const gpu::Kernel::Block> buffers);
     /// Fills the custom vectors of a pass, for one that writes an image of this extent.
     void fill_custom(const plan::ProgramPass& pass, const PassContext& context, VkExtent2D output);
-    void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context);
+    /// Writes a pass's block and descriptors: all that may fail, before there is any command.
+    void prepare_pass(std::uint32_t pass, const Frame& frame, const PassContext& context);
+    void record_pass(VkCommandBuffer commands, std::uint32_t pass);
     void record_value_copies(VkCommandBuffer commands, const Frame& frame);
 
     gpu::Context& context_;
@@ -124,6 +126,14 @@ class Chain final : public Garbage {
     std::vector<Written> written_;
 
     // Scratch of a recording, sized at compile.
+    struct Prepared {
+        const gpu::Kernel* kernel = nullptr;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+        std::array<gpu::Binding, gpu::most_outputs> outputs;
+        std::size_t output_count = 0;
+        VkExtent2D extent{};
+    };
+    std::vector<Prepared> prepared_;  ///< per pass
     plan::FrameValues values_;
     std::vector<plan::Shape> last_shapes_;  ///< per pass
     std::vector<graph::ImportState> import_states_;
@@ -131,13 +141,7 @@ class Chain final : public Garbage {
     std::vector<std::uint32_t> words_;
     std::uint32_t slot_ = 0;
     bool has_missing_kernel_ = false;
-    /// What the histories of its view were before the last recording.
-    struct Before {
-        std::uint32_t view_index = 0;
-        graph::HistoryView view;
-        std::vector<graph::HistoryState> states;  ///< per history
-    };
-    Before before_;
+    std::uint32_t view_index_ = 0;           ///< of the last recording
     std::vector<std::uint8_t> has_history_;  ///< per entry, in the present recording
     // Per watch: what the present frame wants of it, or null; and what came of that.
     std::vector<const Watched*> watched_;

@@ -123,7 +123,7 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     auto physical = graph::Physical::create(context_, *compiled_, desc_.compile.views, histories);
     if (!physical) return failure(std::move(physical));
     physical_.emplace(std::move(*physical));
-    before_.states.resize(program_of().history_entries.size());
+    prepared_.resize(program_of().passes.size());
     has_history_.resize(entries_.size());
     watched_.resize(desc_.compile.watches.size());
     watch_states_.resize(watched_.size());

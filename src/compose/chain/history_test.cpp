@@ -151,5 +151,58 @@ TEST(ComposeHistory, TheCameraSaysWhatAJumpIs) {
     EXPECT_FALSE(goes_on(looking(0), with(behind, never, 3)));
 }
 
+/// Shows `value` everywhere, `times` times over; returns what the target holds then.
+double shown(const Host& host, Composer& composer, double value, int times = 1) {
+    const gpu::test::Picture picture =
+        gpu::test::upload(host.device.context(), test::pixels_of(test::uniform(4, 4, {value, value, value, 1})),
+                          VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    Frame frame = host.frame();
+    frame.color = test::image_ref(picture);
+    for (int i = 0; i < times; ++i) must(host.record(composer, frame));
+    return host.read_target().at(1, 1).r;
+}
+
+class ComposeHistoryStack : public test::StackTest {};
+
+// A history is what its writer left in the last frame. Who writes it is always on here, who reads it is not.
+TEST_F(ComposeHistoryStack, WhatNobodyReadForAWhileDoesNotComeBack) {
+    if (find_effect("recursive_blend") == nullptr) GTEST_SKIP() << "this build has no effect recursive_blend";
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    for (int kind = 0; kind < 3; ++kind) {
+        SCOPED_TRACE(kind);
+        Composer composer(host.device);
+        EntryDesc blend;
+        if (kind == 0) blend.second = test::add(composer, "recursive_blend", {{"weight", 0.5}}, {.input = scene_color});
+        if (kind == 1) blend.second = scene_color.previous();
+        blend.input = test::add(composer, "gaussian_blur", {{"radius", 1.0}}, {.input = scene_color});
+        if (kind == 2)
+            blend.second = test::add(composer, "gaussian_blur", {{"radius", 1.0}}, {.input = scene_color}).previous();
+        const Handle both = test::add(composer, "blend", {}, blend);
+        test::add(composer, "gaussian_blur", {{"radius", 1.0}});
+        must(composer.compile(host.compile_desc()));
+        EXPECT_EQ(shown(host, composer, 1, 3), 1);
+        must(composer.set_enabled(both, false));
+        EXPECT_EQ(shown(host, composer, 0, 20), 0);
+        must(composer.set_enabled(both, true));
+        EXPECT_NEAR(shown(host, composer, 0), 0, 1e-5);
+        EXPECT_NEAR(shown(host, composer, 0), 0, 1e-5);
+    }
+}
+
+TEST_F(ComposeHistoryStack, AnotherStageOfTheKernelsKeepsIt) {
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    Composer composer(host.device);
+    composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
+    test::add(composer, "gaussian_blur", {{"radius", 1.0}});
+    CompileDesc desc = host.compile_desc();
+    for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster, KernelStage::Compute}) {
+        desc.kernels = stage;
+        must(composer.compile(desc));
+        // The first picture stays, whatever is shown.
+        EXPECT_EQ(shown(host, composer, 1 - static_cast<double>(stage == KernelStage::Raster)), 1);
+        EXPECT_EQ(shown(host, composer, 0.5), 1);
+    }
+}
+
 }  // namespace
 }  // namespace darkroom

@@ -21,7 +21,7 @@ HistoryImages::Resampling resampling_of(const gpu::Context& context, VkFormat fo
 bool fits(const gpu::ImageInfo& there, const Slot& slot) {
     return there.format == slot.desc.format && there.extent.width == slot.extent.width &&
            there.extent.height == slot.extent.height && there.mip_levels == slot.desc.mip_levels &&
-           there.array_layers == slot.desc.array_layers && (slot.usage & ~there.usage) == 0;
+           there.array_layers == slot.desc.array_layers;
 }
 
 }  // namespace
@@ -45,11 +45,14 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
         std::vector<std::shared_ptr<HistoryImages>>& of_views = out[slot.history_index];
         // The slot of the other parity may have brought them already.
         for (auto view = static_cast<std::uint32_t>(of_views.size()); view < views; ++view) {
-            if (std::shared_ptr<HistoryImages> there = find(slot, view)) {
-                of_views.push_back(std::move(there));
+            const std::shared_ptr<HistoryImages> there = find(slot, view);
+            const VkImageUsageFlags usage = there ? there->images[0].info.usage : 0;
+            if (there && (slot.desc.is_buffer() || (slot.usage & ~usage) == 0)) {
+                of_views.push_back(there);
                 continue;
             }
             const auto& history = of_views.emplace_back(std::make_shared<HistoryImages>());
+            history->older = there;
             made.emplace_back(std::pair(slot.history_key, view), history);
             if (slot.desc.is_buffer()) {
                 auto buffer =
@@ -62,13 +65,13 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
             history->resampling = resampling_of(context, slot.desc.format);
             const bool is_resampled = history->resampling != HistoryImages::Resampling::None;
             for (std::size_t parity = 0; parity < history->images.size(); ++parity)
-                infos.push_back(
-                    {.name = fmt::format("{} {} of view {}", slot.desc.name, parity, view),
-                     .format = slot.desc.format,
-                     .extent = {slot.extent.width, slot.extent.height, 1},
-                     .mip_levels = slot.desc.mip_levels,
-                     .array_layers = slot.desc.array_layers,
-                     .usage = slot.usage | (is_resampled ? VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_SRC_BIT} : 0)});
+                infos.push_back({.name = fmt::format("{} {} of view {}", slot.desc.name, parity, view),
+                                 .format = slot.desc.format,
+                                 .extent = {slot.extent.width, slot.extent.height, 1},
+                                 .mip_levels = slot.desc.mip_levels,
+                                 .array_layers = slot.desc.array_layers,
+                                 .usage = slot.usage | usage |
+                                          (is_resampled ? VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_SRC_BIT} : 0)});
         }
     }
     const auto memory = std::make_shared<gpu::Memory>();

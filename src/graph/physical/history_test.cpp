@@ -144,9 +144,84 @@ TEST_F(GraphPhysicalHistory, OneIsResetAloneTheOtherGoesOn) {
     Runner runner(small_extent, 1, pool_, declare);
     EXPECT_EQ(frame(runner, 0, 1), 2);
     EXPECT_EQ(frame(runner, 0, 10), 22);
-    runner.physical.history(1)->state.needs_reset = true;
+    runner.physical.history(1)->last_written = HistoryImages::never;
     EXPECT_EQ(frame(runner, 0, 100), 111 + 100);
     EXPECT_EQ(frame(runner, 0, 0), 111 + 100);
+}
+
+TEST_F(GraphPhysicalHistory, OneThatAFrameDidNotWriteIsZeroInTheNext) {
+    const auto declare = [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        const Graph::History history = graph.history(float_image("trail"), key);
+        const Version sum = graph.add({.name = "add",
+                                       .reads = {{history.previous, Use::SampledCompute}},
+                                       .writes = {{history.current, Use::StorageWrite}}})[0];
+        const Version shown =
+            graph.add({.name = "fill", .writes = {{graph.create(float_image("plain")), Use::StorageWrite}}})[0];
+        const Version merged = graph.add({.name = "merge",
+                                          .reads = {{sum, Use::SampledCompute}},
+                                          .writes = {{graph.create(float_image("merged")), Use::StorageWrite}},
+                                          .gate = 0})[0];
+        graph.fall_back(merged, shown);
+        graph.keep(graph.add(
+            {.name = "show", .reads = {{merged, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    };
+    Runner runner(small_extent, 1, pool_, declare);
+    const auto shown = [&](float value, bool is_read) {
+        runner.frame(std::array{&target_}, 0, small_extent, value, std::array{is_read});
+        return gpu::test::download(context_, target_).at(3, 3)[0];
+    };
+    EXPECT_EQ(shown(1, true), 1);
+    EXPECT_EQ(shown(2, true), 3);
+    EXPECT_EQ(shown(4, false), 4) << "its writer is on, but nobody reads it";
+    EXPECT_EQ(shown(8, true), 8);
+    EXPECT_EQ(shown(16, true), 24);
+}
+
+TEST_F(GraphPhysicalHistory, APlanThatUsesItInOtherWaysGoesOn) {
+    const auto also_painted = [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        const Graph::History history = graph.history(float_image("trail"), key);
+        const Version sum = graph.add({.name = "add",
+                                       .reads = {{history.previous, Use::SampledCompute}},
+                                       .writes = {{history.current, Use::StorageWrite}}})[0];
+        const Version painted = graph.add({.name = "paint", .writes = {{sum, Use::ColorBlend}}, .gate = 0})[0];
+        graph.keep(graph.add(
+            {.name = "show", .reads = {{painted, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    };
+    Runner older(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(older, 0, 1), 1);
+    Runner newer(small_extent, 1, pool_, also_painted);
+    ASSERT_NE(newer.physical.history(0), older.physical.history(0)) << "its images were not made to be drawn into";
+    const auto shown = [&](Runner& runner, float value, VkExtent2D extent = small_extent) {
+        runner.frame(std::array{&target_}, 0, extent, value, std::array{false});
+        return gpu::test::download(context_, target_).at(3, 3)[0];
+    };
+    EXPECT_EQ(frame(older, 0, 2), 3);
+    EXPECT_EQ(shown(newer, 4), 7);
+    newer.physical.abandon();
+    EXPECT_EQ(shown(newer, 4, {11, 5}), 7);
+    EXPECT_EQ(shown(newer, 8), 15);
+    EXPECT_EQ(shown(newer, 16), 31);
+    // Taken out again: the images of the newer plan serve as well.
+    Runner newest(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(newest.physical.history(0), newer.physical.history(0));
+    EXPECT_EQ(frame(newest, 0, 32), 63);
+}
+
+TEST_F(GraphPhysicalHistory, WhatIsGivenUpOrTakenBackLeavesNoTrace) {
+    Runner runner(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(runner, 0, 1), 1);
+    for (const VkExtent2D extent : {small_extent, VkExtent2D{5, 3}}) {
+        runner.physical.prepare(extent, false);
+        runner.physical.prepare(extent, true);
+    }
+    EXPECT_EQ(frame(runner, 0, 2), 3);
+    runner.physical.prepare(VkExtent2D{5, 3}, false);
+    runner.schedule->derive({}, {}, runner.physical.frame());
+    runner.physical.end(*runner.schedule);
+    runner.physical.abandon();
+    EXPECT_EQ(frame(runner, 0, 4), 7);
 }
 
 TEST_F(GraphPhysicalHistory, EachHasTwoImagesOfItsOwn) {
@@ -183,12 +258,23 @@ TEST_F(GraphPhysicalHistory, OnlyAnotherPlanIsWaitedForAsAWhole) {
         EXPECT_EQ(dependency->pMemoryBarriers->srcStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
         EXPECT_EQ(dependency->pMemoryBarriers->dstStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
     };
-    older.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    const auto record = [&](Runner& runner) {
+        runner.physical.prepare(small_extent, true);
+        runner.schedule->derive({}, {}, runner.physical.frame());
+        runner.physical.begin(VK_NULL_HANDLE, counting, *runner.schedule);
+        runner.physical.end(*runner.schedule);
+    };
+    record(older);
     EXPECT_EQ(memory_barriers, 0u);
-    newer.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    record(newer);
     EXPECT_EQ(memory_barriers, 1u);
-    newer.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    record(newer);
     EXPECT_EQ(memory_barriers, 1u);
+    // What was taken back may have been another plan's turn.
+    newer.physical.abandon();
+    record(older);
+    record(newer);
+    EXPECT_EQ(memory_barriers, 3u);
 }
 
 TEST_F(GraphPhysicalHistory, TrailsGoOnThroughChangesOfTheExtent) {

@@ -24,6 +24,38 @@ gpu::ImageInfo info_of(const ImageDesc& desc, VkImageUsageFlags usage, VkExtent2
 
 constexpr VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
+void record_wait(VkCommandBuffer commands, const gpu::Dispatch& vk, VkPipelineStageFlags2 from,
+                 VkPipelineStageFlags2 to) {
+    const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                               .srcStageMask = from,
+                               .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                               .dstStageMask = to,
+                               .dstAccessMask = any_access};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
+    vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+/// Brings a whole image into another layout, after everything before and before everything after.
+void record_transition(VkCommandBuffer commands, const gpu::Dispatch& vk, const gpu::Image& image, VkImageLayout from,
+                       VkImageLayout to) {
+    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .dstAccessMask = any_access,
+                                       .oldLayout = from,
+                                       .newLayout = to,
+                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .image = image.handle,
+                                       .subresourceRange = {gpu::format_traits(image.info.format).aspects, 0,
+                                                            VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
+    vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
 }  // namespace
 
 Measure measure_on(gpu::Context& context) {
@@ -59,8 +91,8 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
 Result<Physical> Physical::create(gpu::Context& context, const Compiled& compiled, std::uint32_t views,
                                   HistoryPool& pool) {
     Physical physical;
-    physical.recorder_ = pool.next_recorder();
     for (std::uint32_t index = 0; index < std::max(views, 1u); ++index) physical.views_.push_back(pool.view(index));
+    physical.last_recordings_.assign(physical.views_.size(), HistoryImages::never);
     if (compiled.transient_bytes() > 0) {
         auto memory =
             gpu::Memory::create(context, {.size = compiled.transient_bytes(), .alignment = compiled.memory_alignment()},
@@ -206,122 +238,107 @@ bool Physical::has_same_extent(std::uint32_t history_index, const Extents& a, co
     return of_a.width == of_b.width && of_a.height == of_b.height;
 }
 
-void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Extents& extents,
-                     std::uint32_t view_index) const {
+const HistoryImages& Physical::source_of(const HistoryImages& images) const {
+    // The plan that the older images belong to outlives the recordings that are unfinished when this one begins.
+    const auto older = images.last_written == HistoryImages::never ? images.older.lock() : nullptr;
+    return older ? *older : images;
+}
+
+void Physical::prepare(const Extents& extents, bool is_related, std::uint32_t view_index) {
     HistoryView& view = histories(view_index);
-    const Extents last = std::exchange(view.extents, extents);
-    if (std::exchange(view.recorder, recorder_) != recorder_ && view.recordings > 0) {
-        // A schedule knows what its own plan does to a history, not what another one did.
-        const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                   .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                   .dstAccessMask = any_access};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
-        vk.CmdPipelineBarrier2(commands, &dependency);
-    }
-    bool is_resampled = false;
+    view.staged = view.now;
+    view.staged.extents = extents;
+    is_resampled_ = false;
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);
         if (images == nullptr) continue;
-        images->state.needs_reset |= images->state.recordings != view.recordings;
-        images->state.was_reset = false;
-        is_resampled |= !images->state.needs_reset && !has_same_extent(index, last, extents);
+        const HistoryImages& source = source_of(*images);
+        images->is_valid = is_related && source.last_written == view.now.recordings;
+        is_resampled_ |= images->is_valid && (&source != images || !has_same_extent(index, view.now.extents, extents));
     }
-    if (is_resampled) return record_resample(commands, vk, view_index, last, extents);
+    if (!is_resampled_) return;
+    // All go on in their other image, so they have one parity still.
+    ++view.staged.recordings;
+    for (std::uint32_t index = 0; index < history_count(); ++index) {
+        HistoryImages* const images = history(index, view_index);
+        if (images != nullptr && images->buffer.handle == VK_NULL_HANDLE)
+            images->is_valid &= images->resampling != HistoryImages::Resampling::None;
+    }
+}
+
+void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Schedule& schedule,
+                     std::uint32_t view_index) {
+    const HistoryView& view = histories(view_index);
+    if (view.now.recordings > 0 && last_recordings_[view_index] != view.now.recordings) {
+        // A schedule knows what its own plan does to a history, not what another one did.
+        record_wait(commands, vk, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    }
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         const HistoryImages* const images = history(index, view_index);
-        if (images != nullptr && images->state.needs_reset) record_reset(commands, vk, view_index, index);
+        if (images == nullptr) continue;
+        const bool is_buffer = images->buffer.handle != VK_NULL_HANDLE;
+        if (!is_buffer && !schedule.reads_history(index)) continue;
+        if (!images->is_valid) {
+            record_reset(commands, vk, view_index, index);
+        } else if (is_resampled_ && !is_buffer) {
+            record_resample(commands, vk, view_index, index, view.now.extents, view.staged.extents);
+        }
     }
 }
 
-void Physical::end(std::uint32_t view_index) const {
+void Physical::end(const Schedule& schedule, std::uint32_t view_index) {
     HistoryView& view = histories(view_index);
-    ++view.recordings;
+    const std::uint64_t number = ++view.staged.recordings;
+    last_recordings_[view_index] = number;
     for (std::uint32_t index = 0; index < history_count(); ++index) {
-        if (HistoryImages* const images = history(index, view_index)) images->state.recordings = view.recordings;
+        HistoryImages* const images = history(index, view_index);
+        if (images == nullptr) continue;
+        images->before = images->last_written;
+        if (images->buffer.handle != VK_NULL_HANDLE || schedule.writes_history(index)) images->last_written = number;
     }
+    std::swap(view.now, view.staged);
 }
 
-Barrier Physical::before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const {
-    return {.slot = slot,
-            .mips = {0, entries_[slot].mip_levels},
-            .source_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-            .target_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-            .source_access = VK_ACCESS_2_MEMORY_WRITE_BIT,
-            .target_access = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
-            .old_layout = from,
-            .new_layout = to};
-}
-
-Barrier Physical::after_transfer(std::uint32_t slot, VkImageLayout from) const {
-    return {.slot = slot,
-            .mips = {0, entries_[slot].mip_levels},
-            .source_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-            .target_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-            .source_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-            .target_access = any_access,
-            .old_layout = from,
-            .new_layout = entries_[slot].rest_layout};
+void Physical::abandon(std::uint32_t view_index) {
+    HistoryView& view = histories(view_index);
+    std::swap(view.now, view.staged);
+    last_recordings_[view_index] = HistoryImages::never;
+    for (std::uint32_t index = 0; index < history_count(); ++index)
+        if (HistoryImages* const images = history(index, view_index)) images->last_written = images->before;
 }
 
 void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
                             std::uint32_t history_index) const {
-    HistoryImages* const images = history(history_index, view_index);
+    const HistoryImages* const images = history(history_index, view_index);
     if (images == nullptr) return;
-    if (images->buffer.handle != VK_NULL_HANDLE) return record_fill(commands, vk, *images);
-    const auto [even, odd] = histories_[history_index].slots;
+    if (images->buffer.handle != VK_NULL_HANDLE) {
+        record_wait(commands, vk, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT);
+        vk.CmdFillBuffer(commands, images->buffer.handle, 0, VK_WHOLE_SIZE, 0);
+        record_wait(commands, vk, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+        return;
+    }
     constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    const std::array before{before_transfer(even, VK_IMAGE_LAYOUT_UNDEFINED, layout),
-                            before_transfer(odd, VK_IMAGE_LAYOUT_UNDEFINED, layout)};
-    record_barriers(commands, vk, before, view_index);
-    for (const std::uint32_t slot : {even, odd}) {
-        const Entry& entry = entries_[slot];
-        const VkImageAspectFlags aspects = gpu::format_traits(entry.format).aspects;
-        const VkImageSubresourceRange range{aspects, 0, entry.mip_levels, 0, entry.array_layers};
+    const VkImageLayout rest = entries_[histories_[history_index].slots[0]].rest_layout;
+    for (const gpu::Image& image : images->images) {
+        record_transition(commands, vk, image, VK_IMAGE_LAYOUT_UNDEFINED, layout);
+        const VkImageAspectFlags aspects = gpu::format_traits(image.info.format).aspects;
+        const VkImageSubresourceRange range{aspects, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
         if ((aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
             constexpr VkClearDepthStencilValue zero{};
-            vk.CmdClearDepthStencilImage(commands, handle(slot, view_index), layout, &zero, 1, &range);
+            vk.CmdClearDepthStencilImage(commands, image.handle, layout, &zero, 1, &range);
         } else {
             constexpr VkClearColorValue zero{};
-            vk.CmdClearColorImage(commands, handle(slot, view_index), layout, &zero, 1, &range);
+            vk.CmdClearColorImage(commands, image.handle, layout, &zero, 1, &range);
         }
+        record_transition(commands, vk, image, layout, rest);
     }
-    const std::array after{after_transfer(even, layout), after_transfer(odd, layout)};
-    record_barriers(commands, vk, after, view_index);
-    images->state.needs_reset = false;
-    images->state.was_reset = true;
-}
-
-void Physical::record_fill(VkCommandBuffer commands, const gpu::Dispatch& vk, HistoryImages& images) {
-    const auto wait = [&](VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
-        const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = from,
-                                   .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                   .dstStageMask = to,
-                                   .dstAccessMask = any_access};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
-        vk.CmdPipelineBarrier2(commands, &dependency);
-    };
-    wait(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT);
-    vk.CmdFillBuffer(commands, images.buffer.handle, 0, VK_WHOLE_SIZE, 0);
-    wait(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-    images.state.needs_reset = false;
-    images.state.was_reset = true;
-}
-
-void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index) const {
-    for (std::uint32_t index = 0; index < history_count(); ++index) record_reset(commands, vk, view_index, index);
 }
 
 /// Repeats the last column and row of the region beyond it. A blit clamps at the edge of the image for sure, at that of
 /// the region only if the driver likes ("Image Copies with Scaling" in the specification), and what lies beyond is the
 /// rest of some larger frame.
-void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot,
-                              std::uint32_t view_index, const Extents& from, const Extents& to) const {
-    const Entry& entry = entries_[slot];
+void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, const Entry& entry, VkImage image,
+                              const Extents& from, const Extents& to) const {
     for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
         const VkExtent2D whole = mip_extent(entry.extent, mip);
         const VkExtent2D region = mip_extent(entry.size.of(from), mip), target = mip_extent(entry.size.of(to), mip);
@@ -337,31 +354,26 @@ void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk,
         if (is_wider) copy({width - 1, 0, 0}, {width, 0, 0}, {1, region.height, 1});
         if (is_higher) copy({0, height - 1, 0}, {0, height, 0}, {region.width, 1, 1});
         if (is_wider && is_higher) copy({width - 1, height - 1, 0}, {width, height, 0}, {1, 1, 1});
-        const VkImage image = handle(slot, view_index);
         if (count == 0) continue;
         vk.CmdCopyImage(commands, image, VK_IMAGE_LAYOUT_GENERAL, image, VK_IMAGE_LAYOUT_GENERAL, count, copies.data());
     }
 }
 
-/// From the image of the last frame to the other one.
-void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
-                           std::uint32_t view_index, const Extents& from, const Extents& to) const {
-    const History& history = histories_[history_index];
-    const std::size_t parity = histories(view_index).recordings & 1;
-    const std::uint32_t source = history.slots[1 - parity], target = history.slots[parity];
-    const bool is_linear = history.views[view_index]->resampling == HistoryImages::Resampling::Linear &&
-                           !has_same_extent(history_index, from, to);
-    const Entry& entry = entries_[source];
+void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                               std::uint32_t history_index, const Extents& from, const Extents& to) const {
+    const HistoryImages& images = *history(history_index, view_index);
+    const std::size_t parity = histories(view_index).now.recordings & 1;
+    const gpu::Image &source = source_of(images).images[1 - parity], &target = images.images[parity];
+    const bool is_linear =
+        images.resampling == HistoryImages::Resampling::Linear && !has_same_extent(history_index, from, to);
+    const Entry& entry = entries_[histories_[history_index].slots[0]];
     constexpr VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     constexpr VkImageLayout target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-    constexpr VkImageLayout padding_layout = VK_IMAGE_LAYOUT_GENERAL;
-    const std::array before{before_transfer(source, entry.rest_layout, is_linear ? padding_layout : source_layout),
-                            before_transfer(target, VK_IMAGE_LAYOUT_UNDEFINED, target_layout)};
-    record_barriers(commands, vk, before, view_index);
+    record_transition(commands, vk, source, entry.rest_layout, is_linear ? VK_IMAGE_LAYOUT_GENERAL : source_layout);
+    record_transition(commands, vk, target, VK_IMAGE_LAYOUT_UNDEFINED, target_layout);
     if (is_linear) {
-        record_padding(commands, vk, source, view_index, from, to);
-        const Barrier padded = before_transfer(source, padding_layout, source_layout);
-        record_barriers(commands, vk, {&padded, 1}, view_index);
+        record_padding(commands, vk, entry, source.handle, from, to);
+        record_transition(commands, vk, source, VK_IMAGE_LAYOUT_GENERAL, source_layout);
     }
     for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
         const auto corner = [&](const Extents& frame) {
@@ -370,28 +382,11 @@ void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, st
         };
         const VkImageSubresourceLayers layers{gpu::format_traits(entry.format).aspects, mip, 0, entry.array_layers};
         const VkImageBlit blit{layers, {{}, corner(from)}, layers, {{}, corner(to)}};
-        vk.CmdBlitImage(commands, handle(source, view_index), source_layout, handle(target, view_index), target_layout,
-                        1, &blit, is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+        vk.CmdBlitImage(commands, source.handle, source_layout, target.handle, target_layout, 1, &blit,
+                        is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
     }
-    const std::array after{after_transfer(source, source_layout), after_transfer(target, target_layout)};
-    record_barriers(commands, vk, after, view_index);
-}
-
-void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
-                               const Extents& from, const Extents& to) const {
-    HistoryView& view = histories(view_index);
-    for (std::uint32_t index = 0; index < history_count(); ++index) {
-        HistoryImages* const images = history(index, view_index);
-        if (images == nullptr) continue;
-        const bool is_buffer = images->buffer.handle != VK_NULL_HANDLE;
-        if (images->state.needs_reset || (!is_buffer && images->resampling == HistoryImages::Resampling::None)) {
-            record_reset(commands, vk, view_index, index);
-        } else if (!is_buffer) {
-            record_blit(commands, vk, index, view_index, from, to);
-        }
-        images->state.recordings = view.recordings + 1;
-    }
-    ++view.recordings;
+    record_transition(commands, vk, source, source_layout, entry.rest_layout);
+    record_transition(commands, vk, target, target_layout, entry.rest_layout);
 }
 
 }  // namespace darkroom::graph

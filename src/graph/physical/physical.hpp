@@ -3,11 +3,10 @@
 // The Vulkan images behind the slots of a compiled graph: transients in one shared allocation, two images a history and
 // view, and the host's images, lent frame by frame. It records barriers, resets and resampling; it decides nothing.
 //
-// Per recording of a view, where there are histories:
-// 1. HistoryState::needs_reset = true where the last frame cannot be used: after a cut, or where a pass that writes the
-//    history was off and is on; then begin().
-// 2. Schedule::derive(..., histories(view).recordings), barriers, passes, final barriers.
-// 3. end().
+// Per recording of a view:
+// 1. prepare(): what each history holds is worked out. Until end() all of it is staged: who gives up leaves no trace.
+// 2. Schedule::derive(..., frame(view)).
+// 3. begin(), barriers, passes, final barriers, end().
 
 #include "gpu/resource/resources.hpp"
 #include "graph/physical/history_pool.hpp"
@@ -65,24 +64,30 @@ class Physical {
     [[nodiscard]] HistoryImages* history(std::uint32_t history_index, std::uint32_t view_index = 0) const;
     [[nodiscard]] std::uint32_t history_count() const { return static_cast<std::uint32_t>(histories_.size()); }
 
-    /// Orders this recording after all that another Physical, an older or a newer one, did to the view's histories.
-    /// Resets those that need it, or were not part of the view's last recording; resamples the others if an extent that
-    /// one of them is a fraction of is not the last frame's.
-    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Extents& extents,
-               std::uint32_t view_index = 0) const;
+    /// Begins a recording of the view, without commands. A history is valid if `is_related` (the frame goes on from the
+    /// last one) and the view's last recording wrote it.
+    void prepare(const Extents& extents, bool is_related, std::uint32_t view_index = 0);
+    /// For Schedule::derive.
+    [[nodiscard]] std::uint64_t frame(std::uint32_t view_index = 0) const {
+        return histories(view_index).staged.recordings;
+    }
+    /// Orders the recording after all that another Physical, an older or a newer one, did to the view's histories. Of
+    /// those that the schedule reads, it resets what is not valid, and if an extent that one of them is a fraction of
+    /// is not the last frame's, or one of them lies in images of an older plan, resamples the others.
+    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Schedule& schedule,
+               std::uint32_t view_index = 0);
     /// The recording of the view is complete.
-    void end(std::uint32_t view_index = 0) const;
+    void end(const Schedule& schedule, std::uint32_t view_index = 0);
+    /// Takes back the view's last recording, which was this one's.
+    void abandon(std::uint32_t view_index = 0);
     /// Clears a history to zero and brings it to its rest layout.
     void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
                       std::uint32_t history_index) const;
-    /// All of a view.
-    void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index = 0) const;
-    /// Resamples what the next frame of the view, of the extents `to`, gets as previous, from one of the extents
-    /// `from`, each the top left of its image. The parity of the view advances, so all its histories are resampled
-    /// together: as they are where their own extent stays, else linearly where their formats allow, by the nearest
-    /// texel where they do not. What cannot be resampled, or needs a reset, is reset.
+    /// Of a valid history, resamples what the frame gets as previous, from one of the extents `from`, each the top left
+    /// of its image: as it is where its own extent stays, else linearly where its format allows, by the nearest texel
+    /// where it does not.
     void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
-                         const Extents& from, const Extents& to) const;
+                         std::uint32_t history_index, const Extents& from, const Extents& to) const;
 
   private:
     struct Entry {
@@ -111,16 +116,12 @@ class Physical {
     };
     static void adopt(Entry& entry, const gpu::Image& image);
     void adopt_history(const Slot& slot, std::uint32_t index);
-    /// A barrier of a whole image for transfers, after and before everything else.
-    [[nodiscard]] Barrier before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const;
-    [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
     /// Is a history as large in both frames?
     [[nodiscard]] bool has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const;
-    static void record_fill(VkCommandBuffer commands, const gpu::Dispatch& vk, HistoryImages& images);
-    void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot, std::uint32_t view_index,
+    /// The images that the last recording left it in.
+    [[nodiscard]] const HistoryImages& source_of(const HistoryImages& images) const;
+    void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, const Entry& entry, VkImage image,
                         const Extents& from, const Extents& to) const;
-    void record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
-                     std::uint32_t view_index, const Extents& from, const Extents& to) const;
 
     gpu::Buffer buffers_;  ///< all transient ones
     gpu::Memory memory_;   ///< before the images, so that they are destroyed first
@@ -128,7 +129,8 @@ class Physical {
     std::vector<Entry> entries_;
     std::vector<History> histories_;  ///< by Slot::history_index
     std::vector<std::shared_ptr<HistoryView>> views_;
-    std::uint64_t recorder_ = 0;
+    std::vector<std::uint64_t> last_recordings_;  ///< per view: the number of this one's last
+    bool is_resampled_ = false;                   ///< in the recording in hand
 };
 
 }  // namespace darkroom::graph

@@ -17,7 +17,9 @@ struct Bed {
     gpu::Context& context;
     VkFormat format;
     std::uint32_t mip_levels;
-    Physical physical;
+    std::optional<Compiled> compiled{};
+    std::optional<Schedule> schedule{};
+    Physical physical{};
 
     Bed(VkFormat of_format, std::uint32_t levels, gpu::Context& on = gpu::test::context())
         : context(on), format(of_format), mip_levels(levels) {
@@ -27,16 +29,15 @@ struct Bed {
         graph.keep(graph.add({.name = "write",
                               .reads = {{history.previous, Use::SampledCompute}},
                               .writes = {{history.current, Use::StorageWrite}}})[0]);
-        const Compiled compiled = gpu::test::must(graph.compile(largest, measure_on(context)));
-        physical = gpu::test::must(Physical::create(context, compiled));
+        compiled = gpu::test::must(graph.compile(largest, measure_on(context)));
+        schedule.emplace(*compiled);
+        physical = gpu::test::must(Physical::create(context, *compiled));
     }
 
     [[nodiscard]] VkExtent2D region(VkExtent2D frame, std::uint32_t mip) const {
         return mip_extent(Size::fraction(2).of(frame), mip);
     }
-    [[nodiscard]] const gpu::Image& previous() const {
-        return physical.history(0)->images[1 - (physical.histories().recordings & 1)];
-    }
+    [[nodiscard]] const gpu::Image& previous() const { return physical.history(0)->images[1 - (physical.frame() & 1)]; }
 
     /// Copies every level of the previous image from, or to, one buffer after the other.
     void transfer(std::span<const gpu::Buffer> buffers, bool is_upload) const {
@@ -88,13 +89,22 @@ struct Bed {
             }
         }
         transfer(staging, true);
-        physical.history(0)->state.needs_reset = false;
+        wrote(frame);
+    }
+    void wrote(VkExtent2D frame) const {
+        physical.histories().now.extents = frame;
+        physical.history(0)->last_written = physical.histories().now.recordings;
     }
 
-    void resample(VkExtent2D from, VkExtent2D to) const {
-        gpu::test::must(gpu::submit_and_wait(context, "resampling", [&](VkCommandBuffer commands) {
-            physical.record_resample(commands, context.vk, 0, from, to);
-        }));
+    /// The beginning of a frame.
+    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent) {
+        physical.prepare(extent, true);
+        schedule->derive({}, {}, physical.frame());
+        physical.begin(commands, vk, *schedule);
+    }
+    void resample(VkExtent2D to) {
+        gpu::test::must(gpu::submit_and_wait(context, "resampling",
+                                             [&](VkCommandBuffer commands) { begin(commands, context.vk, to); }));
     }
 
     /// Calls visit(value, x, y, mip) for what the next frame gets as previous.
@@ -140,14 +150,14 @@ TEST(GraphPhysicalResample, AGradientGoesOnWithinHalfACode) {
     for (const Change& change : changes) {
         SCOPED_TRACE(
             fmt::format("{}x{} to {}x{}", change.from.width, change.from.height, change.to.width, change.to.height));
-        const Bed bed(VK_FORMAT_R32_SFLOAT, 3);
+        Bed bed(VK_FORMAT_R32_SFLOAT, 3);
         const auto gradient = [](double x, double y, std::uint32_t mip) {
             return 0.1 + 0.3 * mip + 0.01 * x + 0.005 * y;
         };
         bed.put<float>(change.from, junk, [&](std::uint32_t x, std::uint32_t y, std::uint32_t mip) {
             return static_cast<float>(gradient(x, y, mip));
         });
-        bed.resample(change.from, change.to);
+        bed.resample(change.to);
         double worst = 0;
         bed.get<float>(change.to, [&](float value, std::uint32_t x, std::uint32_t y, std::uint32_t mip) {
             const VkExtent2D from = bed.region(change.from, mip), to = bed.region(change.to, mip);
@@ -159,11 +169,11 @@ TEST(GraphPhysicalResample, AGradientGoesOnWithinHalfACode) {
 }
 
 TEST(GraphPhysicalResample, IntegersKeepTheirNearestTexel) {
-    const Bed bed(VK_FORMAT_R32_UINT, 1);
+    Bed bed(VK_FORMAT_R32_UINT, 1);
     constexpr Change change{{14, 10}, {22, 18}};  // 7x5 to 11x9: no centre lies between two texels.
     bed.put<std::uint32_t>(change.from, 999999u,
                            [](std::uint32_t x, std::uint32_t y, std::uint32_t) { return 1000 * y + x; });
-    bed.resample(change.from, change.to);
+    bed.resample(change.to);
     bed.get<std::uint32_t>(change.to, [](std::uint32_t value, std::uint32_t x, std::uint32_t y, std::uint32_t) {
         EXPECT_EQ(value, 1000 * ((2 * y + 1) * 5 / 18) + (2 * x + 1) * 7 / 22) << x << ", " << y;
     });
@@ -180,7 +190,7 @@ TEST(GraphPhysicalResample, WhatCannotBeBlittedStartsFromZero) {
         ask(device, format, properties);
         properties->optimalTilingFeatures &= ~VkFormatFeatureFlags{VK_FORMAT_FEATURE_BLIT_DST_BIT};
     };
-    const Bed bed(VK_FORMAT_R32_SFLOAT, 2, context);
+    Bed bed(VK_FORMAT_R32_SFLOAT, 2, context);
     context.vk.GetPhysicalDeviceFormatProperties = ask;
     EXPECT_EQ(bed.physical.history(0)->images[0].info.usage & VK_IMAGE_USAGE_TRANSFER_SRC_BIT, 0u);
     // Its images cannot be copied from, so the commands show what is done.
@@ -192,8 +202,8 @@ TEST(GraphPhysicalResample, WhatCannotBeBlittedStartsFromZero) {
                                      const VkImageSubresourceRange*) { ++clears; };
     counting.CmdBlitImage = [](VkCommandBuffer, VkImage, VkImageLayout, VkImage, VkImageLayout, std::uint32_t,
                                const VkImageBlit*, VkFilter) { ++blits; };
-    bed.physical.history(0)->state.needs_reset = false;
-    bed.physical.record_resample(VK_NULL_HANDLE, counting, 0, VkExtent2D{50, 30}, VkExtent2D{60, 40});
+    bed.wrote({50, 30});
+    bed.begin(VK_NULL_HANDLE, counting, {60, 40});
     EXPECT_EQ(clears, 2u);
     EXPECT_EQ(blits, 0u);
 }

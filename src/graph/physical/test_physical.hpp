@@ -56,8 +56,9 @@ class Runner {
             physical.bind(i, {.handle = image.handle, .view = image.view, .mip_views = image.mip_views});
         }
         gpu::test::must(gpu::submit_and_wait(context_, "a test frame", [&](VkCommandBuffer commands) {
-            physical.begin(commands, context_.vk, extent, view);
-            schedule->derive(gates, imports, physical.histories(view).recordings);
+            physical.prepare(extent, true, view);
+            schedule->derive(gates, imports, physical.frame(view));
+            physical.begin(commands, context_.vk, *schedule, view);
             const auto checked = check(*compiled, *schedule, imports);
             EXPECT_TRUE(checked) << checked.error().text;
             for (const Step& step : schedule->steps()) {
@@ -66,7 +67,7 @@ class Runner {
                 record_pass(commands, step.pass, view, extent, value);
             }
             physical.record_barriers(commands, context_.vk, schedule->final_barriers(), view);
-            physical.end(view);
+            physical.end(*schedule, view);
         }));
     }
 
