@@ -11,7 +11,7 @@ import sys
 from api import Api
 
 FILES = {"c_loader": "include/darkroom/darkroom_load.h", "python": "darkroom_ctypes.py", "rust": "darkroom.rs",
-         "rust_crates": "rust", "csharp": "Darkroom.cs", "zig": "darkroom.zig", "odin": "darkroom.odin"}
+         "rust_crates": "rust", "csharp": "Darkroom.cs", "java": "Darkroom.java", "zig": "darkroom.zig", "odin": "darkroom.odin"}
 
 
 def write(path, text):

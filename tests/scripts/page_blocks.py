@@ -36,6 +36,7 @@ docs/farm.md            sh        CliPages.Farm
 docs/hosts.md           c         ExampleSwapchain
 docs/hosts.md           cpp       ExampleVma
 docs/hosts.md           go        ExampleCgo
+docs/hosts.md           java      ExampleLwjgl
 docs/hosts.md           rust,toml ExampleAsh
 docs/hud.md             xml       CliPages.DocumentsControllersAndCameras
 docs/install.md         sh,cmake  PageBuilds
