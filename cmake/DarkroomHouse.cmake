@@ -1,6 +1,6 @@
 # What the tree is made of, as CMake knows it: ${DARKROOM_GENERATED}/house.txt has a line for each target of ours, each
 # room (a folder of code below the target's own), and each target that one links, or loads and starts while it runs.
-# docs/make/make_house_picture.sh draws docs/pictures/house.svg from it, and the test House tells when that has aged.
+# docs/make/make_pictures.py draws docs/pictures/house.svg from it, and the test House tells when that has aged.
 # Included last, when all targets are there.
 
 # What only helps to build or to test what is drawn; so does what an effect brings.

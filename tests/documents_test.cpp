@@ -97,7 +97,7 @@ TEST(Documents, LooksNameEveryKeyOfAnEntry) {
 }
 
 TEST(Documents, TablesNameWhatShips) {
-    EXPECT_EQ(first_cells(rows_of("docs/looks.md", "| File |", R"(\[([a-z_]+)\.toml\]\(\.\./looks/[a-z_.]+\))")),
+    EXPECT_EQ(first_cells(rows_of("docs/looks.md", "| Look |", R"(\[([a-z_]+)\.toml\]\(\.\./looks/[a-z_.]+\):[^|]+)")),
               files_of("looks", ".toml"));
     EXPECT_EQ(first_cells(rows_of("docs/scenes.md", "| Scene |", "`([a-z]+)`")), files_of("scenes", ".scene.toml"));
     std::set<std::string> effects;
@@ -107,7 +107,7 @@ TEST(Documents, TablesNameWhatShips) {
         EXPECT_NE(readme.find(fmt::format("[`{0}`](effects/{0}/{0}.md)", effect->name)), std::string::npos)
             << effect->name << " is not in the README";
     }
-    EXPECT_EQ(first_cells(rows_of("docs/effects.md", "| Effect |", R"(\[`([a-z_]+)`\]\(../effects/[a-z_/.]+\))")),
+    EXPECT_EQ(first_cells(rows_of("docs/effects.md", "| Effect |", R"(\[`([a-z_]+)`\]\(../effects/[a-z_/.]+\):[^|]+)")),
               effects);
 }
 

@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import make_pictures
+
 tree = Path(__file__).resolve().parents[2]
 
 # What a user wants, as the pages of effects say it behind "Purpose:".
@@ -53,18 +55,33 @@ def readme_table(effects):
     return "\n".join(lines) + "\n"
 
 
+def settings_of(pair):
+    """What the two pictures of an effect were made with, where it is not the scene's look alone."""
+    said = [f"{word} `{re.sub(' *--(ui|game) [^ ]+', '', flags).strip()}`" for word, flags in (("off", pair.off), ("on", pair.on))
+            if "{" not in flags and re.sub(" *--(ui|game) [^ ]+", "", flags)]
+    if pair.part and pair.part.scale > 1:
+        said.append(f"each pixel {pair.part.scale} times as wide")
+    if pair.part and pair.part.contrast != 1:
+        said.append(f"with {pair.part.contrast} times the contrast")
+    return f" *{', '.join(said)}*" if said else ""
+
+
 def effects_page(effects):
     out = ["# Effects, off and on\n",
            "What each effect does, grouped by what you want. `./darkroom effects NAME` prints an effect's page;",
-           "[Parameters](parameters.md) lists the keys of all. `docs/make/make_effect_pictures.sh` makes the pictures from",
-           "the scenes that ship, `docs/make/make_pages.py` this page.\n"]
+           "[Parameters](parameters.md) lists the keys of all. The pictures are of the scenes that ship, by their own looks, with",
+           "the flags that stand beside them. `docs/make/make_pictures.py` makes them, `docs/make/make_pages.py` this page.\n"]
     for name, text, members in by_purpose(effects):
-        out += [f"## {name.capitalize()}: {text}\n", "| Effect | What it does | Off | On |", "|---|---|---|---|"]
+        out += [f"## {name.capitalize()}: {text}\n", "| Effect | Off | On |", "|---|---|---|"]
         for effect in members:
-            reason = without_pictures.get(effect["name"])
-            pictures = [reason, ""] if reason else [f"![{effect['name']} {state}](pictures/effects/{effect['name']}_{state}.jpg)"
-                                                    for state in ("off", "on")]
-            out.append(f"| {link(effect, '../')} | {effect['doc']} | " + " | ".join(pictures) + " |")
+            name, doc = effect["name"], effect["doc"]
+            reason = without_pictures.get(name)
+            if not reason and name not in make_pictures.effects:
+                sys.exit(f"docs/make/make_pictures.py: has no pictures of {name}")
+            pictures = [reason, ""] if reason else [f"![{name} {state}](pictures/{path})"
+                                                    for state, path in zip(("off", "on"), make_pictures.pictures_of(name))]
+            settings = "" if reason else settings_of(make_pictures.effects[name])
+            out.append(f"| {link(effect, '../')}: {doc}{settings} | " + " | ".join(pictures) + " |")
         out.append("")
     return "\n".join(out)
 
@@ -233,7 +250,7 @@ def dead_links():
                 dead.append(f"{page.relative_to(tree)}: {target}: there is no such file")
             elif anchor and file.suffix == ".md" and anchor not in anchors_of(file.read_text()):
                 dead.append(f"{page.relative_to(tree)}: {target}: there is no such heading")
-    for page in pages[1:]:
+    for page in [*pages[1:], *sorted(tree.glob("docs/pictures/**/*.*"))]:
         if page not in reached:
             dead.append(f"{page.relative_to(tree)}: no page links to it")
     return dead

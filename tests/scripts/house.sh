@@ -5,6 +5,6 @@
 set -euo pipefail
 picture=$1 facts=$2
 if ! diff -u --label "$picture" --label CMake <(sed -n '/^<desc>$/,/^<\/desc>$/p' "$picture" | sed '1d;$d') "$facts"; then
-    echo "the house was rebuilt: run docs/make/make_house_picture.sh"
+    echo "the house was rebuilt: run docs/make/make_pictures.py house"
     exit 1
 fi
