@@ -168,6 +168,9 @@ def shots():
     }
     for order in ("documented", "scene_linear"):
         out[f"{order}.jpg"] = Shot("window", "--vignette-intensity 0.7", look=tree / f"looks/{order}.toml")
+    for name, flags in {"stops": "--exposure 1ev", "agx": "--tonemap-curve agx",
+                        "film": "--tonemap-curve agx --lut {print}"}.items():
+        out[f"recipes/{name}.jpg"] = Shot("window", flags, look="", width=480)
     for name, pair in effects.items():
         off, on = pictures_of(name)
         out[off] = Shot(pair.frame, pair.off, pair.part, look=pair.look and tail)
@@ -287,7 +290,8 @@ class Maker:
     def __init__(self, build, work):
         self.build, self.work = build, work
         self.darkroom = str(build / "bin/darkroom")
-        self.film = work / "film.cube"
+        # Of light, as another look has it, and of code values, as on faded paper.
+        self.tables = {name: work / f"{name}.cube" for name in ("film", "print")}
 
     def run(self, *command, **others):
         done = subprocess.run([str(word) for word in command], cwd=tree, capture_output=True, text=True, **others)
@@ -303,10 +307,10 @@ class Maker:
         self.run(self.darkroom, "render", f"scenes/{scene}.scene.toml", *size, *flags, *device, "-q",
                  "--save-frame", file, "-o", file.with_suffix(".png"))
 
-    def table(self):
-        """What another look does to colours."""
+    def make_tables(self):
         self.run(self.darkroom, "lut", "export", "--color-grade-temperature", 4800, "--color-grade-saturation", 0.5,
-                 "--color-grade-contrast", 1.3, "-o", self.film)
+                 "--color-grade-contrast", 1.3, "-o", self.tables["film"])
+        self.tables["print"].write_text("LUT_1D_SIZE 3\n0.08 0.05 0.07\n0.55 0.49 0.43\n1 0.93 0.8\n")
 
     def shot(self, path, shot, out):
         whole = self.work / f"{path.replace('/', '.')}.png"
@@ -315,7 +319,7 @@ class Maker:
             if isinstance(text, str) and text:
                 given[flag] = whole.with_suffix(flag.replace("--", ".") + ".toml")
                 given[flag].write_text(text if "format = 1" in text or flag == "--events" else f"format = 1\n{text}")
-        flags = shlex.split(shot.flags.replace("{film}", str(self.film)))
+        flags = shlex.split(shot.flags.format(**self.tables))
         file, named = tree / "samples/window.exr", whole
         if shot.frame != "window":
             scene, *rest = shlex.split(frames[shot.frame])
@@ -349,6 +353,16 @@ class Maker:
         self.run(self.build / "bin/darkroom_tests", "--gtest_filter=SoakGpuSsaoTruth.Strip",
                  env=os.environ | {"DARKROOM_PICTURES": str(place("ssao_truth.jpg").parent)})
 
+
+    def review(self, place):
+        """What `compare` shows of a picture that is no more what it was."""
+        for name, flags in (("expected", []), ("now", ["--no-ssao"])):
+            (self.work / name).mkdir()
+            self.run(self.darkroom, "render", "scenes/forge.scene.toml", "--size", "384x216", *flags, *device, "-q",
+                     "-o", self.work / name / "forge.png")
+        self.run(self.darkroom, "compare", self.work / "expected", self.work / "now", "-q", "--sheet", self.work / "sheet.png")
+        place("recipes/review.jpg").parent.mkdir(exist_ok=True)
+        self.jpeg(place("recipes/review.jpg"), self.work / "sheet.png")
 
     def house(self, place):
         """Draws the CMake targets, what they build on, and their rooms. Colours hold on a light page and on a dark one."""
@@ -492,13 +506,14 @@ def main():
         def place(path):
             return made / path.replace("/", ".") if given.check else stored / path
 
-        maker.table()
+        maker.make_tables()
         scenes = sorted({shot.frame for shot in wanted.values()} - {"window"})
         list(pool.map(maker.frame, scenes))
         say(f"{len(scenes)} frames are rendered")
         list(pool.map(lambda path: maker.shot(path, wanted[path], place(path)), wanted))
         say(f"{len(wanted)} pictures are developed")
         others = {("ssao_truth.jpg",): maker.ssao_truth,
+                  ("recipes/review.jpg",): maker.review,
                   tuple(f"viewer_{name}.jpg" for name in windows): maker.viewer}
         if not given.check:
             others[("house.svg",)] = maker.house  # which the test House checks
