@@ -59,8 +59,8 @@ def settings_of(pair):
     """What the two pictures of an effect were made with, where it is not the scene's look alone."""
     said = [f"{word} `{re.sub(' *--(ui|game) [^ ]+', '', flags).strip()}`" for word, flags in (("off", pair.off), ("on", pair.on))
             if "{" not in flags and re.sub(" *--(ui|game) [^ ]+", "", flags)]
-    if pair.part and pair.part.scale > 1:
-        said.append(f"each pixel {pair.part.scale} times as wide")
+    if pair.part:
+        said.append(f"a part, each pixel {pair.part.scale} times as wide" if pair.part.scale > 1 else "a part, pixel by pixel")
     if pair.part and pair.part.contrast != 1:
         said.append(f"with {pair.part.contrast} times the contrast")
     return f" *{', '.join(said)}*" if said else ""

@@ -93,7 +93,7 @@ effects = {
     "depth_of_field": Pair("interior_near", "--depth-of-field --depth-of-field-focus-distance 1.5 --depth-of-field-f-stop 1.8"),
     "dither": Pair("forge", "", "--no-dither", part=Part(880, 60, 2, contrast=12)),
     "exposure": Pair("interior", "", "--exposure 0.7"),
-    "film_grain": Pair("interior_large", "--film-grain-amount 0.025", part=Part(420, 240, 1)),
+    "film_grain": Pair("interior_large", "--film-grain-amount 0.015", part=Part(420, 240, 1)),
     "fog": Pair("courtyard", "--fog-density 0.03", "--no-fog"),
     "frame_blend": Pair("embers", "--frame-blend"),
     "fxaa": Pair("courtyard_jagged", "--fxaa", "--no-fxaa", part=Part(210, 60)),
@@ -265,25 +265,28 @@ class Window:
             self.xdotool(way, "1")
             self.frame()
 
-    def click(self, widget):
-        """Where it lies, the console knows, once it is drawn."""
+    def place(self, widget):
+        """Left, top, right and bottom: the console knows, once it is drawn."""
         for _ in range(600):
             self.viewer.stdin.write(f"places {widget}\n")
             self.viewer.stdin.flush()
             time.sleep(0.1)
             if self.count(f"place {widget} "):
                 break
-        left, top, right, bottom = map(int, self.wait_for(f"place {widget} ", 0).split()[-4:])
+        return [int(number) for number in self.wait_for(f"place {widget} ", 0).split()[-4:]]
+
+    def click(self, widget):
+        left, top, right, bottom = self.place(widget)
         self.point((left + right) / 2 / self.size[0], (top + bottom) / 2 / self.size[1])
         self.press()
 
-    def picture(self, out):
-        """When nothing is told any more."""
+    def picture(self, out, cut):
+        """When nothing is told any more. Without the status line: its times are those of this machine."""
         begin = time.monotonic()
         self.frame()
         time.sleep(3 + 5 * (time.monotonic() - begin))
         file = self.key("shift+F12", "stored darkroom-window-").split()[1]
-        self.maker.jpeg(out, self.room / file)
+        self.maker.jpeg(out, self.room / file, "--cut", cut)
 
 
 class Maker:
@@ -406,6 +409,8 @@ class Maker:
     def viewer(self, place):
         """`play`, and `edit` with what is clicked there."""
         size = (1280, 720)
+        # Parts are as wide as a page, so that their letters stay as large.
+        whole, add, middle = "1280x693+0+0", "706x546+0+38", "680x655+300+38"
         window = Window(self, size)
         try:
             # Whatever is told at the start is gone after two seconds.
@@ -416,29 +421,30 @@ class Maker:
             window.key("p", "P pause: on")
             window.click("stack/bloom")
             window.point(0.5, 0.4)
-            window.picture(place("viewer_edit.jpg"))
+            window.picture(place("viewer_edit.jpg"), whole)
             window.click("stack/add")
             # Each effect's picture is made when it is seen.
             time.sleep(20)
-            window.picture(place("viewer_add.jpg"))
+            window.picture(place("viewer_add.jpg"), add)
             window.xdotool("key", "Escape")
             window.click("tab/Scopes")
             window.click("view/false_colors")
             window.point(0.5, 0.4)
-            window.picture(place("viewer_scopes.jpg"))
+            window.picture(place("viewer_scopes.jpg"), middle)
             window.click("view/false_colors")
             window.click("view/compare")
             window.point(0.4, 0.4)
-            window.picture(place("viewer_compare.jpg"))
+            window.picture(place("viewer_compare.jpg"), middle)
             window.click("view/compare")
             window.click("tab/Images")
             window.click("image/normals/0")
             window.point(0.5, 0.4)
-            window.picture(place("viewer_images.jpg"))
+            window.picture(place("viewer_images.jpg"), middle)
             window.click("tab/Pixel")
-            window.point(0.5, 0.25)
+            window.point(0.57, 0.3)
             window.press()
-            window.picture(place("viewer_pixel.jpg"))
+            window.place("pixel/values")
+            window.picture(place("viewer_pixel.jpg"), middle)
             window.xdotool("key", "Escape")
         finally:
             window.close()

@@ -308,7 +308,7 @@ void EditPanels::draw_images(const Input& input) {
     ImGui::EndChild();
 }
 
-void EditPanels::draw_pixel(const Input& input) const {
+void EditPanels::draw_pixel(const Input& input) {
     if (!pixel_)
         return ImGui::TextWrapped("Click into the picture: what every effect makes of that pixel is shown here.");
     if (input.inspection == nullptr || input.inspection->pixels.empty())
@@ -347,6 +347,7 @@ void EditPanels::draw_pixel(const Input& input) const {
         }
     }
     ImGui::EndTable();
+    look_.note_place("pixel/values");
 }
 
 }  // namespace app

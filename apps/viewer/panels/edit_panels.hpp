@@ -108,7 +108,7 @@ class EditPanels {
     void draw_status(const Input& input, const PictureView& picture);
     void draw_below(const Input& input, PictureView& picture);
     void draw_images(const Input& input);
-    void draw_pixel(const Input& input) const;
+    void draw_pixel(const Input& input);
 
     darkroom::panels::LookPanels look_;
     darkroom::panels::TimingHistory times_;
