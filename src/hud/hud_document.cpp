@@ -70,7 +70,7 @@ struct HudDocument::State {
         }
         process.cancel();
         wakes.notify_all();
-        worker.reset();
+        if (worker.joinable()) worker.join();
     }
 
     [[nodiscard]] std::string placed(std::string_view reason) const {
@@ -141,8 +141,11 @@ struct HudDocument::State {
 
     /// False: no thread can be started, so that the caller has to draw.
     [[nodiscard]] bool ask(Wish wish) {
-        if (!worker) worker = start_thread([this] { work(); });
-        if (!worker) return false;
+        if (!worker.joinable()) {
+            auto started = start_thread([this] { work(); });
+            if (!started) return false;
+            worker = std::move(*started);
+        }
         {
             const std::lock_guard lock(mutex);
             if (is_busy) return true;
@@ -208,7 +211,7 @@ struct HudDocument::State {
     Shown job_shown;
     std::optional<Outcome> done;
     bool is_busy = false, is_over = false;
-    std::optional<std::jthread> worker;
+    std::jthread worker;
 };
 
 HudDocument::HudDocument(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"
@@ -98,12 +97,12 @@ class ModulationReader {
         return names_[static_cast<std::size_t>(entry - look_.entries.data())];
     }
 
-    /// A parameter that can move; nothing, and reported, where it cannot.
-    std::optional<LookTarget> target_of(const toml::node& node, const std::string& key) {
+    /// A parameter that can move; one of no entry, and reported, where it cannot.
+    LookTarget target_of(const toml::node& node, const std::string& key) {
         const Result<LookTarget> target = find_target(look_, key, printable(key));
         if (!target) {
             wrong(node, target.error().text);
-            return std::nullopt;
+            return {};
         }
         const bool is_own = target->is_state && target->row->name != "enabled" && target->row->name != "opacity";
         if (target->row != nullptr && !is_own && target->row->kind != Kind::Resource) return *target;
@@ -112,23 +111,23 @@ class ModulationReader {
                   "{}: it is fixed when the stack is compiled, and cannot move; allowed are parameters, `enabled` and "
                   "`opacity`",
                   printable(key)));
-        return std::nullopt;
+        return {};
     }
 
     void read_pulse(const toml::table& table) {
         LookPulse pulse{.event = text_of(table, "a pulse", "event", true)};
         take_rows(table, pulse_rows, pulse.state, {"event", "parameter", "amount"});
         const std::string key = text_of(table, "a pulse", "parameter", false);
-        const auto target = key.empty() ? std::nullopt : target_of(*table.get("parameter"), key);
-        if (pulse.event.empty() || !target) return;
-        pulse.entry = name_of(target->entry);
-        pulse.parameter = target->row->name;
-        const Kind kind = target->row->kind;
-        if (target->is_state || kind == Kind::Toggle || kind == Kind::Choice || kind == Kind::Curve)
+        const LookTarget target = key.empty() ? LookTarget() : target_of(*table.get("parameter"), key);
+        if (pulse.event.empty() || target.entry == nullptr) return;
+        pulse.entry = name_of(target.entry);
+        pulse.parameter = target.row->name;
+        const Kind kind = target.row->kind;
+        if (target.is_state || kind == Kind::Toggle || kind == Kind::Choice || kind == Kind::Curve)
             return wrong(*table.get("parameter"),
                          fmt::format("{}: a pulse adds to parameters made of numbers", printable(key)));
-        if (target->row->is_amount) wake(*target->entry);
-        if (read_amount(table, target->row->words, pulse.amount)) look_.pulses.push_back(std::move(pulse));
+        if (target.row->is_amount) wake(*target.entry);
+        if (read_amount(table, target.row->words, pulse.amount)) look_.pulses.push_back(std::move(pulse));
     }
 
     bool read_amount(const toml::table& table, std::uint32_t count, std::array<float, 4>& amount) {
@@ -194,17 +193,17 @@ class ModulationReader {
     }
 
     void read_value(const toml::node& node, const std::string& key, LookLayer& layer) {
-        const auto target = target_of(node, key);
-        if (!target) return;
-        const ParamInfo& row = *target->row;
-        if (row.is_amount) wake(*target->entry);
-        std::vector<std::uint32_t> words = target->entry->words;
-        if (target->is_state) {
-            const StateWords state = state_words(target->entry->state);
+        const LookTarget target = target_of(node, key);
+        if (target.entry == nullptr) return;
+        const ParamInfo& row = *target.row;
+        if (row.is_amount) wake(*target.entry);
+        std::vector<std::uint32_t> words = target.entry->words;
+        if (target.is_state) {
+            const StateWords state = state_words(target.entry->state);
             words.assign(state.begin(), state.end());
         }
         if (!reader_.take(row, words, node, printable(key))) return;
-        layer.values.push_back({name_of(target->entry),
+        layer.values.push_back({name_of(target.entry),
                                 std::string(row.name),
                                 {words.begin() + row.word, words.begin() + row.word + row.words}});
     }
