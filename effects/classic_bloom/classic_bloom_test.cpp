@@ -167,7 +167,8 @@ TEST(EffectClassicBloom, SpotsAreRoundAndNoStars) {
 }
 
 TEST(EffectClassicBloom, EveryRadiusIsAnotherGlow) {
-    const EffectInfo& info = effect_info(ClassicBloom{});
+    const ClassicBloom glow;
+    const EffectInfo& info = effect_info(glow);
     const auto row = std::ranges::find(info.parameters.rows, std::string_view("radius"), &ParamInfo::name);
     ASSERT_NE(row, info.parameters.rows.end());
     for (auto radius = static_cast<std::int32_t>(row->range.min); radius < row->range.max; ++radius)

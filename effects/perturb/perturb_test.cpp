@@ -181,10 +181,10 @@ TEST(EffectPerturb, AnImageDisplacesAndRepeats) {
 }
 
 TEST(EffectPerturb, WhatMovesNothingIsOff) {
-    const EffectInfo& info = effect_info(Perturb{});
+    const Perturb on;
+    const EffectInfo& info = effect_info(on);
     for (const Perturb& still : {Perturb{.amount = 0}, Perturb{.strength = {0, 0, 3, 3}}})
         EXPECT_TRUE(info.is_identity(&still));
-    const Perturb on;
     EXPECT_FALSE(info.is_identity(&on));
     const Perturb many{.evaluation = Evaluation::Cpu, .grid = {64, 32}};
     EXPECT_EQ(info.conflict(&many), "grid of 2145 vertices: with evaluation = cpu at most 1000 are allowed");

@@ -105,16 +105,12 @@ struct TestTiff {
 
     /// Grey of 8 bits, in one strip.
     static TestTiff gray(std::uint32_t width, std::uint32_t height) {
-        return {.tags = {{256, {width}},
-                         {257, {height}},
-                         {258, {8}},
-                         {259, {1}},
-                         {262, {1}},
-                         {273, {samples_here}},
-                         {277, {1}},
-                         {278, {height}},
-                         {279, {width * height}}},
-                .samples = std::string(std::size_t{width} * height, 'x')};
+        TestTiff out{.samples = std::string(std::size_t{width} * height, 'x')};
+        const std::map<std::uint32_t, std::uint32_t> values{{256, width}, {257, height}, {258, 8},
+                                                            {259, 1},     {262, 1},      {273, samples_here},
+                                                            {277, 1},     {278, height}, {279, width * height}};
+        for (const auto& [tag, value] : values) out.tags[tag].push_back(value);
+        return out;
     }
     /// As one of a tag's values: where the samples begin.
     static constexpr std::uint32_t samples_here = 0xffffffffU;
