@@ -18,6 +18,7 @@ QUOTED = (("docs/embedding.md", "darkroom::Device device = check(", "examples/em
           ("docs/hosts.md", "unsafe fn stack", "examples/ash.rs"),
           ("docs/hosts.md", "color.struct_size", "examples/cgo.go"),
           ("docs/hosts.md", "var adopt", "examples/Lwjgl.java"),
+          ("docs/hosts.md", "let mut synchronization", "examples/wgpu.rs"),
           ("docs/embedding.md", "VkResult allocate", "examples/vma.cpp"),
           ("docs/custom_effects.md", "// @effect two_pass_blur", "examples/two_pass_blur.glsl"),
           ("docs/custom_effects.md", "// @effect histogram", "examples/histogram.glsl"),
