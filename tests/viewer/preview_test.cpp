@@ -127,7 +127,8 @@ TEST(ReducedFrame, HasThePixelsInTheMiddleAndShorterMotion) {
             velocity.insert(velocity.end(), {static_cast<float>(x) / 3, -4});
             for (int i = 0; i < 4; ++i) color.push_back(static_cast<std::uint16_t>(100 * y + x));
         }
-    darkroom::DevelopInput input{.extent = {width, height}, .depth = depth, .velocity = velocity};
+    const std::vector<float> exposure{3};
+    darkroom::DevelopInput input{.extent = {width, height}, .depth = depth, .velocity = velocity, .exposure = exposure};
     input.color_halves = color;
     const ReducedFrame reduced(input, 2);
     EXPECT_EQ(reduced.input().extent.width, 3U);
@@ -138,6 +139,14 @@ TEST(ReducedFrame, HasThePixelsInTheMiddleAndShorterMotion) {
     EXPECT_EQ(layers[0].halves.size(), 6U * 4);
     EXPECT_EQ(layers[0].halves[4], 103);
     EXPECT_EQ(layers[0].format, darkroom::layers_of(input)[0].format);
+    for (const darkroom::UploadLayer& layer : layers) {
+        const std::size_t pixels = std::size_t{layer.extent.width} * layer.extent.height;
+        EXPECT_TRUE(layer.values.empty() || layer.values.size() == pixels * layer.given) << layer.name;
+        EXPECT_TRUE(layer.halves.empty() || layer.halves.size() == pixels * layer.given_halves ||
+                    layer.given_halves == 0)
+            << layer.name;
+    }
+    EXPECT_TRUE(std::ranges::equal(layers[6].values, exposure));
     EXPECT_FLOAT_EQ(layers[3].values[0], 1.0F / 6);
     EXPECT_EQ(layers[3].values[1], -2);
 }

@@ -107,6 +107,29 @@ TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
     leave();
 }
 
+// All pixels are alike, whatever a blur makes of them.
+TEST_F(CliViewerSpeed, StoredFramesThatMoveAreSeenWhole) {
+    constexpr std::uint32_t width = 1600, height = 900;
+    FrameFile frame{.color = Picture(width, height), .velocity = Plane<2>(width, height), .exposure = 1.0F};
+    for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = i % 4 == 3 ? 1.0F : 0.5F;
+    for (const char* const name : {"f.0001.exr", "f.0002.exr", "f.0003.exr", "f.0004.exr", "f.0005.exr"})
+        ASSERT_TRUE(write_frame(path(name), frame));
+    std::string look;
+    for (int i = 0; i < 8; ++i) look += "[[stack]]\neffect = \"gaussian_blur\"\nradius = 24\n\n";
+    start({"play", path("f.####.exr"), "--fps", "24", "--look",
+           write("blurred.toml", look + "[[stack]]\neffect = \"encode\"\n"), "--size", "1600x900"});
+    ASSERT_TRUE(wait_until([&] { return divisor() == "1600x900 / 2" || divisor() == "1600x900 / 4"; }, 60))
+        << divisor();
+    for (int i = 0; i < 5; ++i) {
+        // Below the pointer, which is in the middle.
+        const Screen seen = screen();
+        for (int y = 600; y < 700; ++y)
+            for (int x = 700; x < 1200; ++x)
+                for (const int code : seen.at(x, y)) ASSERT_NEAR(code, 188, 1) << x << ", " << y;
+    }
+    leave();
+}
+
 TEST_F(CliViewerSpeed, AFrameTimeDrawsASceneWithFewerLinesOfThePicture) {
     const std::string scene = scenes_folder + "showcase.scene.toml";
     const std::string look = write("gathers.toml",

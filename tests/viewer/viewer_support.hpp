@@ -100,10 +100,10 @@ class ViewerFixture : public CliFixture {
         std::array<int, 2> ends{};
         ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
         // Without -noreset it begins anew, and loses who is just connecting, when the last of the others leaves.
-        display_ =
-            std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
-                                                               "0", "1920x1080x24", "-nolisten", "tcp", "-noreset"},
-                                      path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
+        display_ = std::make_unique<Process>(
+            std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1920x1080x24",
+                                     "-nolisten", "tcp", "-noreset", "-fbdir", path("")},
+            path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
         close(ends[1]);
         std::string number;
         char digit = 0;
@@ -201,6 +201,25 @@ class ViewerFixture : public CliFixture {
         const std::size_t at = text.rfind("stored ") + 7;
         return picture(text.substr(at, text.find('\n', at) - at));
     }
+    /// What the display shows, as Xvfb's option -fbdir writes it: a window dump of X11 (XWDFile.h).
+    struct Screen {
+        std::string bytes;
+        [[nodiscard]] std::uint32_t number(std::size_t index) const {
+            std::uint32_t out = 0;
+            for (std::size_t i = 0; i < 4; ++i) out = out << 8U | static_cast<unsigned char>(bytes.at(4 * index + i));
+            return out;
+        }
+        /// Red, green, blue.
+        [[nodiscard]] std::array<int, 3> at(int x, int y) const {
+            constexpr std::size_t header_size = 0, bytes_per_line = 12, colors = 19, bytes_a_color = 12;
+            const std::size_t pixel = number(header_size) + number(colors) * bytes_a_color +
+                                      number(bytes_per_line) * static_cast<std::size_t>(y) +
+                                      4 * static_cast<std::size_t>(x);
+            const auto code = [&](std::size_t i) { return int{static_cast<unsigned char>(bytes.at(pixel + i))}; };
+            return {code(2), code(1), code(0)};
+        }
+    };
+    [[nodiscard]] Screen screen() const { return {content(path("Xvfb_screen0"))}; }
     /// Ends the program as its window's frame does; the validation layer has said nothing.
     void leave() {
         press("alt+F4");

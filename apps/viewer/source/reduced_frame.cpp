@@ -2,6 +2,7 @@
 #include "reduced_frame.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace app {
@@ -41,19 +42,27 @@ ReducedFrame::ReducedFrame(const darkroom::DevelopInput& input, std::uint32_t di
     input_.extent = {(full.width + divisor - 1) / divisor, (full.height + divisor - 1) / divisor};
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         darkroom::UploadLayer& layer = layers_[i];
+        // The exposure is one number, whatever the frame's size.
+        if (layer.extent.width != full.width || layer.extent.height != full.height) continue;
+        layer.extent = input_.extent;
         Kept& kept = kept_[i];
         kept = {.values = reduced(layer.values, full, input_.extent, divisor),
                 .halves = reduced(layer.halves, full, input_.extent, divisor),
-                .bytes = reduced(layer.bytes, full, input_.extent, divisor)};
+                .bytes = reduced(layer.bytes, full, input_.extent, divisor),
+                .codes = reduced(layer.codes, full, input_.extent, divisor)};
         // Motion is in pixels.
         if (std::string_view(layer.name) == "velocity") {
-            for (float& number : kept.values) number /= static_cast<float>(divisor);
+            // Numbers that are kept as halves stay some: their least one is 2^-24.
+            for (float& number : kept.values)
+                number = layer.is_half ? std::round(number / static_cast<float>(divisor) * 0x1p24F) * 0x1p-24F
+                                       : number / static_cast<float>(divisor);
             for (std::uint32_t step = divisor; step > 1; step /= 2)
                 for (std::uint16_t& number : kept.halves) number = half_of(number);
         }
         layer.values = kept.values;
         layer.halves = kept.halves;
         layer.bytes = kept.bytes;
+        layer.codes = kept.codes;
     }
 }
 

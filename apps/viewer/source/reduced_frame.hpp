@@ -23,7 +23,7 @@ class ReducedFrame {
     struct Kept {
         std::vector<float> values;
         std::vector<std::uint16_t> halves;
-        std::vector<std::uint8_t> bytes;
+        std::vector<std::uint8_t> bytes, codes;
     };
     std::array<Kept, std::tuple_size_v<darkroom::UploadLayers>> kept_;
 };
