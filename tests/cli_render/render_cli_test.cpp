@@ -108,7 +108,6 @@ TEST_F(CliRenderFlags, DefaultsAreThoseOfTheHelp) {
                                    "--width",
                                    "--height",
                                    "--size",
-                                   "--schemas",
                                    "--distance",
                                    "--yaw",
                                    "--pitch",
@@ -353,13 +352,6 @@ TEST_F(CliRender, MissingAssetsAreNamedAndTheRestRenders) {
     EXPECT_NE(outcome.err.find("no_such.png"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("no_such_fox"), std::string::npos) << outcome.err;
     EXPECT_EQ(picture("out.png").width, 16u);
-}
-
-TEST_F(CliRenderFlags, OldCommandLinesAreTaken) {
-    const Outcome outcome = render({"--schemas", "a", "--schemas", "b"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find("--schemas"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

@@ -91,7 +91,6 @@ Result<CaptureJob> job_of(const Options& options) {
     Result<std::vector<CaptureScale>> scales = parse_scales(options.scales, job.desc.extent);
     if (!scales) return failure(std::move(scales));
     job.scales = std::move(*scales);
-    options.drawn.warn_of_what_is_ignored();
     return job;
 }
 

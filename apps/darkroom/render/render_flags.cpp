@@ -212,7 +212,6 @@ Result<RenderJob> RenderFlags::job() const {
     job.shots = std::move(*shots);
     if (job.shots.size() > 1) job.write.max_threads = 1;  // several files are encoded at once
     if (Result<> done = check_files(job.shots); !done) return failure(std::move(done));
-    drawn.warn_of_what_is_ignored();
     return job;
 }
 

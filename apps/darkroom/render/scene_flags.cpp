@@ -81,10 +81,6 @@ void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint
     command.add_option("--size", size_, "Width and height").type_name("WxH");
     command.add_flag("--own-files", has_own_files_,
                      "Refuses files that the scene, its prefabs or models name outside of their folders");
-    command.add_option("--schemas", schemas_, "Does nothing; old command lines have it")
-        .repeated()
-        .type_name("DIR")
-        .repeated();
     seed_.add_to(command, "Seed of the particles").type_name("N").default_str("0").group(seed_group);
     add_camera(command);
     add_drawing(command);
@@ -189,10 +185,6 @@ Result<std::uint64_t> SceneFlags::seed() const {
     std::uint64_t seed = 0;
     if (Result<> done = seed_.read_to(seed); !done) return failure(std::move(done));
     return seed;
-}
-
-void SceneFlags::warn_of_what_is_ignored() const {
-    if (!schemas_.empty()) warn("--schemas: scenes are checked without schema files, the folders are not read");
 }
 
 }  // namespace app

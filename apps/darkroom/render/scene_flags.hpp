@@ -37,8 +37,6 @@ class SceneFlags {
     }
     [[nodiscard]] bool has_msaa() const { return msaa_.is_given(); }
     [[nodiscard]] bool is_tone_mapped() const { return !has_no_tone_mapping_; }
-    /// Says what is taken and changes nothing.
-    void warn_of_what_is_ignored() const;
 
   private:
     void add_camera(CommandFlags command);
@@ -49,7 +47,6 @@ class SceneFlags {
     std::uint32_t usual_msaa_ = 1;
     // Optional, so that an empty text is a wrong value, not a missing one.
     std::optional<std::string> size_, target_, debug_mode_, shadow_filter_;
-    std::vector<std::string> schemas_;
     // More pixels than any device takes. Its own limit is said once it is known.
     NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
     NumberFlag height_{"--height", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
