@@ -44,6 +44,7 @@ using Verify = std::function<int(const VerifyFlags&)>;
 [[nodiscard]] std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_new(CommandFlags program);
 [[nodiscard]] Command add_api(CommandFlags program);
+[[nodiscard]] Command add_help(CommandFlags program);
 [[nodiscard]] Command add_completion(CommandFlags program);
 [[nodiscard]] Command add_man(CommandFlags program);
 struct ViewFlags;

@@ -65,7 +65,7 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         // These tell of all others.
         {{},
          [&] {
-             return Commands{app::add_completion(program), app::add_man(program)};
+             return Commands{app::add_help(program), app::add_completion(program), app::add_man(program)};
          }},
     };
     for (const Adding& one : all)

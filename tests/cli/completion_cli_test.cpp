@@ -20,9 +20,10 @@ namespace {
 using test::Outcome;
 using Words = std::vector<std::string>;
 
-const Words commands{"render", "develop",  "probe",       "plan",       "effects",    "devices",   "compare",
-                     "info",   "lut info", "lut convert", "lut export", "farm slurm", "farm task", "farm status",
-                     "play",   "edit",     "new",         "completion", "man",        "bake",      "api"};
+const Words commands{"render",    "develop",     "probe",    "plan",        "effects",    "devices",
+                     "compare",   "info",        "lut info", "lut convert", "lut export", "farm slurm",
+                     "farm task", "farm status", "play",     "edit",        "new",        "completion",
+                     "man",       "bake",        "api",      "help"};
 
 class CliCompletion : public test::CliFixture {
   protected:

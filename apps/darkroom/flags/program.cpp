@@ -28,6 +28,12 @@ std::vector<std::string> known_names(const CLI::App& command) {
     return names;
 }
 
+std::vector<std::string> names_of_commands(const CLI::App& program) {
+    std::vector<std::string> names;
+    for (const CLI::App* const command : program.get_subcommands({})) names.push_back(command->get_name());
+    return names;
+}
+
 // "lut info": a command and whose it is.
 std::string full_name(const CLI::App& command) {
     const CLI::App* const above = command.get_parent();
@@ -62,13 +68,9 @@ const CLI::App* command_with_rest(const CLI::App& program) {
 std::string unknown_argument(const CLI::App& program) {
     if (const CLI::App* const command = command_with_rest(program))
         return unknown_argument(*command, command->remaining().front());
-    std::vector<std::string> commands;
-    for (const CLI::App* const command : program.get_subcommands({})) commands.push_back(command->get_name());
     const std::vector<std::string> rest = program.remaining();
-    if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(commands, ", "));
-    const std::string near = darkroom::suggestion(rest.front(), known_names(program));
-    return fmt::format("unknown command '{}'{} allowed is {}", printable(rest.front()), near.empty() ? ":" : near,
-                       fmt::join(commands, ", "));
+    if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(names_of_commands(program), ", "));
+    return unknown_command(program, rest.front());
 }
 
 darkroom::Failure value_needed(std::string_view flag) {
@@ -93,6 +95,12 @@ std::string missing(const CLI::App& program, const char* text) {
 }
 
 }  // namespace
+
+std::string unknown_command(const CLI::App& program, const std::string& name) {
+    const std::string near = darkroom::suggestion(name, known_names(program));
+    return fmt::format("unknown command '{}'{} allowed is {}", printable(name), near.empty() ? ":" : near,
+                       fmt::join(names_of_commands(program), ", "));
+}
 
 Program::Program()
     : parser_(std::make_unique<CLI::App>("Renders scenes, and develops raw HDR frames into finished pictures.",

@@ -29,6 +29,7 @@ class Program {
     std::unique_ptr<CLI::App> parser_;
 };
 
+[[nodiscard]] std::string unknown_command(const CLI::App& program, const std::string& name);
 /// -q and -v.
 void add_voice(CommandFlags command);
 /// Whether the command line names it.

@@ -6,9 +6,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/flags/program.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
 #include "describe.hpp"
@@ -103,7 +106,8 @@ int print_help(const CommandText& command, bool has_all) {
                    wrapped(fmt::format("{}", fmt::join(effects, " ")), 2, 2));
     if (command.name.empty())
         fmt::print(
-            "\nExit codes: 0 done, 1 the request is wrong, 2 the machine failed; `compare` has 3: they differ.\n"
+            "\nExit codes: 0 done, 1 the request is wrong, 2 the machine failed; 3, of `compare`: they differ,\n"
+            "of `farm status`: pictures are missing.\n"
             "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on.\n");
     return exit_ok;
 }
@@ -130,6 +134,18 @@ const CLI::App* child_of(const CLI::App& command, std::string_view name) {
     return named.empty() ? nullptr : named.front();
 }
 
+/// What `help` tells: of the program, of a command, of an effect of a command.
+int print_named(const CLI::App& program, std::span<const std::string> words) {
+    const CLI::App* command = &program;
+    for (const std::string& word : words) {
+        const CLI::App* const child = child_of(*command, word);
+        if (child == nullptr && command != &program) return print_effect(describe(*command), word);
+        if (child == nullptr) return fail_user(unknown_command(program, word));
+        command = child;
+    }
+    return print_help(describe(*command), false);
+}
+
 }  // namespace
 
 void add_help_flags(CLI::App& program) {
@@ -137,7 +153,19 @@ void add_help_flags(CLI::App& program) {
     program.set_help_all_flag("--help-all", "Prints this help with the flags of all effects, and other commands");
 }
 
+Command add_help(CommandFlags program) {
+    const CommandFlags command = program.add_command("help", "Tells of a command, or of an effect's flags");
+    command.examples(
+        "darkroom help\n"
+        "darkroom help lut export\n"
+        "darkroom help develop bloom");
+    const auto words = std::make_shared<std::vector<std::string>>();
+    command.add_option("COMMAND", *words, "A command, and an effect whose flags it has; without it all commands");
+    return {command, [=] { return print_named(program.parser(), *words); }};
+}
+
 std::optional<int> answer_help(const CLI::App& program, std::span<char* const> arguments) {
+    if (arguments.size() < 2) return print_help(describe(program), false);
     const CLI::App* command = &program;
     bool is_command = true;
     for (std::size_t i = 1; i < arguments.size(); ++i) {

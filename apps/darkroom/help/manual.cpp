@@ -74,8 +74,8 @@ std::string page_of(const CommandText& command, std::span<const CommandText> all
     page += ".SH EXAMPLES\n.nf\n";
     for (const std::string& example : command.examples) page += literal(example) + "\n";
     page +=
-        ".fi\n.SH EXIT STATUS\n0: done. 1: the request is wrong. 2: the machine failed. 3, of compare alone: they "
-        "differ.\n";
+        ".fi\n.SH EXIT STATUS\n0: done. 1: the request is wrong. 2: the machine failed. 3, of compare: they differ; of "
+        "farm status: pictures are missing.\n";
     if (!command.name.empty()) page += ".SH SEE ALSO\n.BR darkroom (1)\n";
     return page;
 }
