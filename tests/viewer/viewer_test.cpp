@@ -116,6 +116,10 @@ TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
     EXPECT_EQ(shown.err, "");
     EXPECT_LE(difference(picture("developed.png"), picture("shown.png")), 1.001 / 255);
     EXPECT_EQ(picture("window.png").width, 1600U);
+    // Without a look, too.
+    ASSERT_EQ(run({"develop", path("frame.exr"), "--no-fxaa", "-o", path("developed.png")}).code, 0);
+    ASSERT_EQ(run({"edit", path("frame.exr"), "--no-fxaa", "--screenshot", path("shown.png")}).code, 0);
+    EXPECT_LE(difference(picture("developed.png"), picture("shown.png")), 1.001 / 255);
 }
 
 class CliViewerKeys : public CliViewer, public testing::WithParamInterface<const char*> {};

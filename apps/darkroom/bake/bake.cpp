@@ -185,6 +185,7 @@ Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> name
         "darkroom bake my.toml -o kernels.dkb --profile software --target-format B8G8R8A8_SRGB");
     const auto options = std::make_shared<Options>();
     command.add_option("LOOK", options->looks, "Look files or scenes (TOML), and folders of them")
+        .names_look()
         .type_name("LOOK")
         .required();
     command.add_option("-o,--output,--out", options->out, "The file: .dkb").type_name("OUT").required();

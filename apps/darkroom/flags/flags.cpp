@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/darkroom/run/shipped.hpp"
+
 namespace app {
 
 Flag& Flag::required() {
@@ -53,6 +55,11 @@ Flag& Flag::one_value() {
 
 Flag& Flag::needs(const Flag& other) {
     option_->needs(other.option_);
+    return *this;
+}
+
+Flag& Flag::names_look() {
+    option_->transform(CLI::Validator(find_shipped_look, ""));
     return *this;
 }
 

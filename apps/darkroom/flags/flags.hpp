@@ -40,6 +40,8 @@ class Flag {
     /// One value each time, although there is room for several.
     Flag& one_value();
     Flag& needs(const Flag& other);
+    /// The name of a look that ships stands for its file.
+    Flag& names_look();
     [[nodiscard]] std::size_t count() const;
 
   private:

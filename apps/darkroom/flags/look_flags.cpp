@@ -109,11 +109,14 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
     if (has_look_flag)
         command
             .add_option("--look", file,
-                        "A look file (TOML), or a scene (.scene.toml) for the look in it. Default: the scene's own, or "
-                        "the defaults, of which frames of files get no occlusion and no light in the air")
+                        "A look file (TOML), a scene (.scene.toml) for the look in it, or the name of a look that "
+                        "ships: night. Default: the scene's own, or the defaults, of which frames of files get no "
+                        "occlusion and no light in the air")
+            .names_look()
             .type_name("FILE")
             .group(group);
-    command.add_option("--layer", layers_, "A look file whose [post_process] is laid over the look")
+    command.add_option("--layer", layers_, "A look file, or one that ships, whose [post_process] is laid over the look")
+        .names_look()
         .type_name("FILE")
         .repeated()
         .group(group);

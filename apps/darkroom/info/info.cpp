@@ -145,7 +145,11 @@ Command add_info(CommandFlags program) {
         "darkroom info frame.exr\n"
         "darkroom info scene.toml my.toml\n"
         "darkroom info frame.exr --json");
-    command.add_option("FILE", options->files, "Files of any known kind, which is told by their content").required();
+    command
+        .add_option("FILE", options->files,
+                    "Files of any known kind, which is told by their content; looks that ship, by name")
+        .names_look()
+        .required();
     command.add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
     command.add_flag("--own-files", options->has_own_files,
                      "Refuses files that a scene, its prefabs or models name outside of their folders");

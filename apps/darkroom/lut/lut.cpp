@@ -93,7 +93,8 @@ Command add_export(CommandFlags lut, std::span<const darkroom::LookEntry> named)
     const auto options = std::make_shared<Options>();
     const CommandFlags command =
         add(lut, "export", "Writes what a look does to colours as a table of 65 steps over 16.5 stops", options->to);
-    command.add_option("LOOK", options->look.file, "A look file (TOML), or a scene; default: the flat table");
+    command.add_option("LOOK", options->look.file, "A look file (TOML), or a scene; default: the flat table")
+        .names_look();
     options->look.add_to(command, false, named);
     return {command, [options] {
                 const Result<> done = export_to(options->to, options->look);

@@ -78,6 +78,14 @@ void add_layers_of_scenes(darkroom::CompileDesc& compile) {
     compile.has_shadows = true;
 }
 
+/// What a frame has nobody knows where none is named.
+void name_no_frame(darkroom::Plan& plan) {
+    constexpr std::string_view missing = ", which the frame does not have";
+    for (std::string& text : plan.left_out)
+        if (text.ends_with(missing))
+            text.replace(text.size() - missing.size(), missing.size(), "; no frame is named, --input FRAME does");
+}
+
 Result<std::string> text_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look_of_frames();
     if (!look) return failure(look.error());
@@ -120,8 +128,9 @@ Result<std::string> text_of(const Options& options) {
     compile.has_shadows =
         std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
     if (options.frame.empty() && is_scene_name(options.look.file)) add_layers_of_scenes(compile);
-    const Result<darkroom::Plan> plan = composer.plan(compile);
+    Result<darkroom::Plan> plan = composer.plan(compile);
     if (!plan) return failure(plan.error());
+    if (options.frame.empty()) name_no_frame(*plan);
     if (options.wants_statistics) return statistics_of(options, *device, composer, *plan, compile);
     return options.is_json ? plan->json() : plan->text();
 }
@@ -143,9 +152,11 @@ Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> name
         "darkroom plan my.toml --as-stack\n"
         "darkroom plan --bloom-intensity 0.2 --json");
     const auto options = std::make_shared<Options>();
-    command.add_option(
-        "LOOK", options->look.file,
-        "A look file or a scene (TOML), whose renderer gives all layers. Default: the flat table at its defaults");
+    command
+        .add_option(
+            "LOOK", options->look.file,
+            "A look file or a scene (TOML), whose renderer gives all layers. Default: the flat table at its defaults")
+        .names_look();
     command.add_flag("--json", options->is_json, "For programs");
     command.add_flag("--as-stack", options->wants_stack,
                      "Prints the look itself: a flat table as the [[stack]] that it stands for");

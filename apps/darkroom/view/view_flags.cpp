@@ -13,10 +13,12 @@ constexpr VkExtent2D play_extent{1280, 720}, edit_extent{1600, 900};
 
 void ViewFlags::add_to(CommandFlags command, bool edits, std::span<const darkroom::LookEntry> named) {
     is_edit = edits;
-    command.add_option(
-        "INPUT", inputs,
-        "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr; a look "
-        "(.toml) is shown on a frame that ships, or on what stands beside it");
+    command
+        .add_option(
+            "INPUT", inputs,
+            "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr; a look "
+            "(.toml, or the name of one that ships) is shown on a frame that ships, or on what stands beside it")
+        .names_look();
     const std::string group = "The window";
     command.add_flag("--fullscreen", is_fullscreen, "Fills the screen").group(group);
     command

@@ -8,6 +8,7 @@
 
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "apps/darkroom/run/shipped.hpp"
 #include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
@@ -35,16 +36,6 @@ bool is_look(const std::string& input) {
     return file && darkroom::scene::reading::has_look(*file) && !darkroom::scene::reading::is_scene(*file);
 }
 
-/// The frame that ships: beside the sources that the program was built from, or installed with it. Empty: neither.
-std::filesystem::path shipped_sample() {
-    std::error_code error;
-    std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path())
-        for (const char* const name : {"samples/window.exr", "share/darkroom/samples/window.exr"})
-            if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;
-    return {};
-}
-
 /// What is named: files to be shown, and the look that they are shown through.
 struct Named {
     std::vector<std::string> inputs;
@@ -65,7 +56,7 @@ Result<Named> named_by(const ViewFlags& flags) {
     }
     if (!out.inputs.empty()) return out;
     if (flags.inputs.empty()) return user_error("a scene, a model or a frame is needed");
-    const std::filesystem::path sample = shipped_sample();
+    const std::filesystem::path sample = shipped_file("samples/window.exr");
     if (sample.empty())
         return user_error(
             fmt::format("{}: is a look, and the sample frame is not there: a scene, a "
@@ -91,7 +82,6 @@ Result<> read_subject(ViewerJob& job, const ViewFlags& flags, const std::vector<
     if (Result<> done = flags.time.read_to(job.time); !done) return done;
     if (Result<> done = flags.frames_per_second.read_to(job.frame_desc.frames_per_second); !done) return done;
     job.step = 1 / job.frame_desc.frames_per_second.value_or(usual_frames_per_second);
-    flags.drawn.warn_of_what_is_ignored();
     if (has_scene) {
         job.scene = inputs.front();
         return {};
@@ -122,7 +112,9 @@ Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path
     darkroom::LookOptions options = job.look_options;
     options.warnings = &warnings;
     if (path.empty()) {
-        job.document.emplace(darkroom::default_look(), job.look_options);
+        // As render and develop begin.
+        job.document.emplace(job.scene.empty() ? darkroom::default_look_of_traced_light() : darkroom::default_look(),
+                             job.look_options);
     } else {
         Result<darkroom::edit::LookDocument> opened =
             darkroom::edit::LookDocument::open(path, options, lens_for(job, path));

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "shipped.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include "core/system/module.hpp"
+#include "core/text/param_text.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+fs::path shipped_file(const fs::path& name) {
+    std::error_code error;
+    fs::path folder = darkroom::running_program().parent_path();
+    for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path())
+        for (const fs::path& file : {folder / name, folder / "share/darkroom" / name})
+            if (fs::is_regular_file(file, error)) return file;
+    return {};
+}
+
+std::string find_shipped_look(std::string& name) {
+    std::error_code error;
+    if (name.empty() || name.find_first_of("/.\\") != std::string::npos || fs::exists(name, error)) return {};
+    if (const fs::path found = shipped_file("looks/" + name + ".toml"); !found.empty()) {
+        name = found.string();
+        return {};
+    }
+    std::vector<std::string> names;
+    for (fs::directory_iterator file(shipped_file("looks/default.toml").parent_path(), error), end;
+         !error && file != end; file.increment(error))
+        if (file->path().extension() == ".toml") names.push_back(file->path().stem().string());
+    std::ranges::sort(names);
+    return fmt::format("{}: no such file, and no look that ships has this name{}", darkroom::printable(name),
+                       darkroom::suggestion(name, names));
+}
+
+}  // namespace app
