@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <darkroom/effects.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -108,9 +109,74 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
                    "two inputs would be written to it");
 }
 
+TEST_F(Cli, HelpIsWhatItPrintsWithoutACommandToo) {
+    const std::string help = run({"--help"}).out;
+    EXPECT_NE(help.find("Usage: darkroom"), std::string::npos) << help;
+    for (const std::vector<std::string>& asked : {std::vector<std::string>{}, {"help"}}) {
+        const Outcome outcome = run(asked);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.out, help);
+    }
+    EXPECT_EQ(run({"help", "lut", "export"}).out, run({"lut", "export", "--help"}).out);
+    EXPECT_EQ(run({"help", "develop", "bloom"}).out, run({"develop", "--help", "bloom"}).out);
+}
+
+TEST_F(Cli, NoFlagDoesNothing) {
+    const std::string all = run({"--help-all"}).out + run({"render", "--help-all"}).out;
+    EXPECT_EQ(all.find("oes nothing"), std::string::npos);
+    expect_refused({"render", path("a.scene.toml"), "-o", path("x.png"), "--schemas", "a"}, 1,
+                   "render: unknown argument '--schemas'");
+}
+
+TEST_F(Cli, ALookThatShipsIsNamed) {
+    const std::string night = std::string(test::source_folder) + "/looks/night.toml";
+    const auto developed = [&](const std::string& flag, const std::string& look) {
+        const Outcome outcome = run({"develop", path("frame.exr"), "-o", path("out.png"), flag, look});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return content(path("out.png"));
+    };
+    EXPECT_EQ(developed("--look", "night"), developed("--look", night));
+    EXPECT_EQ(developed("--layer", "daze"),
+              developed("--layer", std::string(test::source_folder) + "/looks/daze.toml"));
+    EXPECT_EQ(run({"plan", "night"}).out, run({"plan", night}).out);
+    EXPECT_EQ(run({"info", "night"}).code, 0);
+    EXPECT_EQ(run({"lut", "export", "clean", "-o", path("clean.cube")}).code, 0);
+    expect_refused({"develop", path("frame.exr"), "-o", path("x.png"), "--look", "nigt"}, 1,
+                   "--look: nigt: no such file, and no look that ships has this name, did you mean 'night'?");
+    // A file of this name is what was meant.
+    write("night", "format = 1\n[post_process]\nexposure = 0.25\n");
+    const Outcome own = run_lines("darkroom plan night --as-stack");
+    EXPECT_NE(own.out.find("exposure = 0.25"), std::string::npos) << own.out << own.err;
+}
+
+TEST_F(Cli, APlanWithoutAFrameSaysNotWhatItLacks) {
+    const std::string look = write("dark.toml", "format = 1\n[[stack]]\neffect = \"ssao\"\n");
+    EXPECT_NE(run({"plan", look}).out.find("left out: ssao: needs depth; no frame is named, --input FRAME does\n"),
+              std::string::npos);
+    EXPECT_NE(run({"plan", look, "--input", path("frame.exr")}).out.find("which the frame does not have"),
+              std::string::npos);
+}
+
+TEST_F(Cli, DevicesAreToldToPrograms) {
+    const Outcome text = run({"devices"}), told = run({"devices", "--json"});
+    EXPECT_EQ(text.code, told.code);
+    const auto devices = nlohmann::json::parse(told.out, nullptr, false);
+    ASSERT_TRUE(devices.is_array()) << told.out << told.err;
+    std::string lines;
+    for (const auto& device : devices) {
+        lines += fmt::format("{}: {} | {} | Vulkan {} | {}", device.at("index").get<int>(),
+                             device.at("name").get<std::string>(), device.at("driver").get<std::string>(),
+                             device.at("vulkan").get<std::string>(), device.at("kind").get<std::string>());
+        if (!device.at("usable").get<bool>()) lines += " | not usable: " + device.at("reason").get<std::string>();
+        lines += "\n";
+    }
+    EXPECT_EQ(text.out, lines);
+}
+
 TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     const std::string frame = path("frame.exr"), out = path("x.png");
-    expect_refused({}, 1, "a command is needed");
+    expect_refused({"help", "devlop"}, 1, "unknown command 'devlop', did you mean 'develop'? allowed is render, ");
+    expect_refused({"help", "develop", "blom"}, 1, "no such effect, did you mean 'bloom'?");
     expect_refused({"devlop"}, 1, "unknown command 'devlop', did you mean 'develop'? allowed is render, develop, ");
     expect_refused({"qqqqqqqq"}, 1, "unknown command 'qqqqqqqq': allowed is render, develop, ");
     expect_refused({"farm", "status", ".", "--jsn"}, 1,

@@ -2,6 +2,7 @@
 // `darkroom compare` as a build server meets it: exit codes, thresholds, what is not a number, many files at once.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -263,6 +264,18 @@ TEST_F(CliCompareMany, TheSheetShowsTheWorstInTheirOrder) {
     // FLIP errors of the second row: all alike, and brighter than those of the eighth.
     EXPECT_GT(sheet.at(8 + 2 * (width + 8) + 4, 8 + height + 8)[0],
               sheet.at(8 + 2 * (width + 8) + 4, 8 + 7 * (height + 8))[0]);
+}
+
+TEST_F(CliCompare, WhatIsNotThereIsNamed) {
+    fs::create_directory(path("folder"));
+    for (const auto& [a, b, missing] : std::vector<std::array<std::string, 3>>{{"folder", "none", "none"},
+                                                                               {"none", "folder", "none"},
+                                                                               {"none/", "other/", "none/"},
+                                                                               {"a.png", "none.png", "none.png"}}) {
+        const Outcome outcome = compare(a, b);
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_EQ(outcome.err, "darkroom: " + path(missing) + ": there is no such file or folder\n");
+    }
 }
 
 }  // namespace

@@ -65,6 +65,9 @@ Result<Files> files_of_sequence(const std::string& input) {
 }  // namespace
 
 Result<FilePairs> find_pairs(const std::string& reference, const std::string& test) {
+    for (const std::string& name : {reference, test})
+        if (std::error_code error; !fs::exists(name, error) && !darkroom::has_number_pattern(name))
+            return user_error(fmt::format("{}: there is no such file or folder", printable(name)));
     const Side side = side_of(reference), other = side_of(test);
     if (side != other)
         return user_error(fmt::format("{} is {} and {} is {}: two files, two folders or two sequences are needed",
