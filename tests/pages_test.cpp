@@ -55,7 +55,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 /// Without a remark, and beginning with ./darkroom where a page may leave out the folder.
 std::string command_of(const std::string& line) {
-    const std::string command = line.substr(0, line.find("  #"));
+    const std::string command =
+        line.find("# exit code ") != std::string::npos ? line : line.substr(0, line.find("  #"));
     return command.starts_with("darkroom ") ? "./" + command : command;
 }
 
@@ -280,6 +281,22 @@ TEST_F(CliPages, FlagsAndFilesAreThere) {
     EXPECT_GT(flags, 100U);
     EXPECT_GT(named, 20U);
 }
+// What it says of the look that is there without one.
+TEST_F(CliPages, DevelopWithoutALookIsTheDefaultLessWhatFramesHave) {
+    std::string row;
+    for (const std::string& line : lines_of(test::content(fs::path(test::source_folder) / "docs/looks.md")))
+        if (line.starts_with("| [default.toml]")) row = line;
+    std::string flags;
+    const std::regex code("`([a-z_]+)`");
+    for (std::sregex_iterator at(row.begin(), row.end(), code), end; at != end; ++at)
+        if (find_effect(at->str(1)) != nullptr)
+            flags += " --no-" + std::regex_replace(at->str(1), std::regex("_"), "-");
+    const test::Outcome outcome =
+        run_lines("./darkroom develop a.exr -o plain.png\n./darkroom develop a.exr --look default" + flags +
+                  " -o less.png\n./darkroom compare plain.png less.png --fail-max 0");
+    EXPECT_EQ(outcome.code, 0) << row << flags << outcome.out << outcome.err;
+    EXPECT_EQ(std::ranges::count(flags, ' '), 3);
+}
 TEST_F(CliPages, DocumentsControllersAndCameras) {
     const auto first = [](const std::string& page, const std::string& kind) {
         for (const PageBlock& block : blocks_of_page(page))
@@ -308,7 +325,8 @@ TEST_F(CliPages, Bindings) {
     fs::create_directory(path("FOLDER"));
     std::size_t run = 0;
     for (const auto& [kind, text] : blocks_of_page("docs/bindings.md")) {
-        if (kind != "sh") continue;
+        // Lines that build are PageBuilds' matter.
+        if (kind != "sh" || text.starts_with("cmake --build ")) continue;
         ++run;
         const test::Outcome outcome = run_lines("export PYTHONDONTWRITEBYTECODE=1\n" + text);
         EXPECT_EQ(outcome.code, 0) << text << outcome.err;
@@ -316,15 +334,33 @@ TEST_F(CliPages, Bindings) {
     EXPECT_EQ(run, 1U);
     EXPECT_TRUE(fs::exists(path("FOLDER/darkroom.rs")));
 }
+/// The lines behind "- run: " of a workflow.
+std::vector<std::string> steps_of(const std::string& yaml) {
+    constexpr std::string_view run = "- run: ";
+    std::vector<std::string> out;
+    for (const std::string& line : lines_of(yaml))
+        if (const std::size_t at = line.find(run); at != std::string::npos) out.push_back(line.substr(at + run.size()));
+    return out;
+}
+// What PBS does with a job array, one task after the other.
+constexpr std::string_view qsub = R"(qsub() {
+    local range first last step
+    range=$(sed -nE 's/^#PBS -J ([0-9]+)-([0-9]+):([0-9]+)$/\1 \2 \3/p' "$1")
+    read -r first last step <<<"$range"
+    for index in $(seq "$first" "$step" "$last"); do
+        (cd / && PBS_O_WORKDIR=$OLDPWD PBS_ARRAY_INDEX=$index bash "$OLDPWD/$1")
+    done
+}
+)";
 TEST_F(CliPages, Farm) {
     // Nothing is submitted: the lines that ask for progress tell of what a task has made, and one picture is missing.
     ASSERT_EQ(run_lines("darkroom farm task 'shot.####.exr' --look my.toml -o out/ --mkdir --frames 1").code, 0);
     std::size_t run = 0;
     for (const char* const page : {"docs/farm.md", "docs/command_line.md"})
         for (const auto& [kind, text] : blocks_of_page(page)) {
-            if (kind != "sh") continue;
+            if (kind != "sh" || text.find("parallel") != std::string::npos) continue;
             for (std::string line : lines_of(text)) {
-                if (!line.starts_with("darkroom farm ")) continue;
+                if (!line.starts_with("darkroom farm ") || line.find("$first") != std::string::npos) continue;
                 ++run;
                 const bool submits = line.starts_with("darkroom farm slurm ");
                 if (submits && line.find(" --dry-run") == std::string::npos) line += " --dry-run";
@@ -334,6 +370,67 @@ TEST_F(CliPages, Farm) {
             }
         }
     EXPECT_GE(run, 7U);
+}
+TEST_F(CliPages, FarmsWithoutSlurm) {
+    for (int number = 3; number <= 12; ++number)
+        fs::copy_file(path("shot.0001.exr"), path(fmt::format("shot.{:04}.exr", number)));
+    ASSERT_EQ(run_lines("darkroom develop 'shot.####.exr' --look my.toml -o alone/ --mkdir").code, 0);
+    const auto expect_all = [&](const std::string& lines) {
+        fs::remove_all(path("out"));
+        const test::Outcome outcome = run_lines(lines + "darkroom farm status out/\n");
+        EXPECT_EQ(outcome.code, 0) << lines << outcome.out << outcome.err;
+        EXPECT_NE(outcome.out.find("out/shot.farm: 12 frames: 12 done"), std::string::npos) << outcome.out;
+        for (int number = 1; number <= 12; ++number) {
+            const std::string name = fmt::format("/shot.{:04}.png", number);
+            EXPECT_EQ(test::content(path("out" + name)), test::content(path("alone" + name))) << lines;
+        }
+    };
+    std::size_t farms = 0;
+    for (const auto& [kind, text] : blocks_of_page("docs/farm.md")) {
+        if (kind == "sh" && text.find("| parallel ") != std::string::npos) {
+            ++farms;
+            if (run_lines("command -v parallel").code == 0) expect_all(text);
+        } else if (kind == "sh" && text.find("#PBS") != std::string::npos) {
+            ++farms;
+            expect_all(std::string(qsub) + text);
+        } else if (kind == "yaml") {
+            ++farms;
+            std::smatch chunks;
+            ASSERT_TRUE(std::regex_search(text, chunks, std::regex(R"(frames: \[(.*)\])")));
+            const std::string list = chunks[1], frames = "${{ matrix.frames }}";
+            std::string lines;
+            for (std::string step : steps_of(text)) {
+                if (step.starts_with("darkroom/darkroom ")) continue;
+                const std::size_t at = step.find(frames);
+                if (at == std::string::npos) {
+                    lines += step + "\n";
+                    continue;
+                }
+                step.replace(at, frames.size(), "\"$frames\"");
+                lines +=
+                    "for frames in " + std::regex_replace(list, std::regex(","), " ") + "; do " + step + "; done\n";
+            }
+            expect_all(lines);
+        }
+    }
+    EXPECT_EQ(farms, 3U);
+}
+// A job begins on a machine without Darkroom.
+TEST_F(CliPages, WorkflowsInstallDarkroom) {
+    const std::string installs = "cmake --install darkroom/build";
+    std::size_t jobs = 0;
+    for (const std::string& page : pages_of_docs())
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            if (kind != "yaml") continue;
+            bool is_there = false;
+            for (const std::string& step : steps_of(text)) {
+                is_there = is_there || (step.starts_with("darkroom/darkroom --yes ") && step.ends_with(installs));
+                if (!step.starts_with("darkroom ")) continue;
+                ++jobs;
+                EXPECT_TRUE(is_there) << page << ": " << step;
+            }
+        }
+    EXPECT_GE(jobs, 3U);
 }
 TEST_F(CliPages, Windows) {
     if (!fs::exists(fs::path(program).parent_path().parent_path() / "lib/darkroom/darkroom_viewer"))

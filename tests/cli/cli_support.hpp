@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -46,6 +47,20 @@ inline std::string content(const std::filesystem::path& path) {
     return text.str();
 }
 
+inline std::string with_exit_codes(const std::string& lines) {
+    static const std::regex remark("^(.*[^ ]) +# exit code ([0-9]+)$");
+    std::istringstream all(lines);
+    std::string out;
+    for (std::string line; std::getline(all, line);) {
+        std::smatch found;
+        if (std::regex_match(line, found, remark))
+            line = "code=0; " + found.str(1) + " || code=$?; [[ $code == " + found.str(2) +
+                   " ]] || { echo \"exit code $code in place of " + found.str(2) + "\" >&2; exit 99; }";
+        out += line + "\n";
+    }
+    return out;
+}
+
 class CliFixture : public testing::Test {
   protected:
     void SetUp() override {
@@ -78,13 +93,14 @@ class CliFixture : public testing::Test {
         for (const std::string& argument : arguments) command.append(1, ' ').append(quoted(argument));
         return run_command(command);
     }
-    /// Lines as one types them, run by bash in the folder of the test; the first that fails ends them.
+    /// Lines as one types them, run by bash in the folder of the test; the first that fails ends them. One with the
+    /// remark "# exit code 3" fails where it ends with another.
     [[nodiscard]] Outcome run_lines(const std::string& lines) const {
         const std::string script = folder_.string() + ".sh";
         std::ofstream(script) << "set -eo pipefail\ncd " << quoted(folder_.string())
                               << "\nPATH=" << quoted(std::filesystem::path(program).parent_path().string())
                               << ":$PATH\n"
-                              << lines << '\n';
+                              << with_exit_codes(lines) << '\n';
         const Outcome outcome = run_command("bash " + quoted(script));
         std::filesystem::remove(script);
         return outcome;

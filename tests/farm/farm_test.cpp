@@ -219,6 +219,7 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     EXPECT_EQ(second.out, "job 17: 3 of 12 pictures in 2 chunks; darkroom farm status out/shot.farm\n") << second.err;
     EXPECT_NE(content(path("script.sh")).find("\nchunks=(6-9 12-12)\n"), std::string::npos);
     for (const int number : {6, 9, 12}) put_picture(number);
+    EXPECT_EQ(farm("status out").out, "out/shot.farm: 12 frames: 12 done, 0 failed, 0 missing\n");
     EXPECT_EQ(farm(shot).out, "all 12 pictures are there, nothing is submitted\n");
 }
 
@@ -294,7 +295,7 @@ TEST_F(FarmFiles, AChangedPrefabOrCameraIsNoticed) {
     EXPECT_NE(farm(frames).err.find("view.toml"), std::string::npos) << "what is wrong is told at once";
 }
 
-TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
+TEST_F(FarmFiles, StatusIsToldFromRecordsAndPictures) {
     const auto record = [&](const std::string& name, const std::string& state, const std::string& done,
                             const std::string& job) {
         std::string frames = name;
@@ -302,17 +303,22 @@ TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
         write("out/shot.farm/" + name + ".json",
               fmt::format(R"({{"format":1,"chunk":"{}","state":"{}","frames":[[{}]],"done":{},"made":2,"tries":4,)"
                           R"("seconds":3,"begun":"2026-01-02T03:04:05Z","node":"n1","job":"{}",)"
-                          R"("errors":["darkroom: frame: is empty"]}})",
+                          R"("errors":["darkroom: frame: is empty"],"input":"shot.####.exr","output":"out/",)"
+                          R"("output_is_folder":true}})",
                           name, state, frames, done, job));
     };
     fs::create_directory(path("out/shot.farm"));
     write("out/shot.farm/job.json",
-          R"({"format":1,"job":"17","frames":[[1,24]],"done":[[1,1]],"arguments":["shot.####.exr"]})");
+          R"({"format":1,"job":"17","frames":[[1,24]],"done":[[1,1]],"arguments":["shot.####.exr"],)"
+          R"("input":"shot.####.exr","output":"out/","output_is_folder":true})");
+    for (int number = 1; number <= 15; ++number)
+        if (number != 12 && number != 14) put_picture(number);
     record("2-9", "done", "[[2,9]]", "17_0");
     record("10-14", "failed", "[[10,11],[13,13]]", "17_1");
     record("15-20", "begun", "[[15,15]]", "17_2");
     record("21-22", "done", "[[21,22]]", "16_3");
     const Outcome text = farm("status out");
+    EXPECT_EQ(text.code, 3) << "pictures are missing";
     EXPECT_EQ(text.err, "");
     EXPECT_EQ(text.out,
               "out/shot.farm: 24 frames: 13 done, 2 failed, 9 missing\n"
@@ -325,7 +331,22 @@ TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
     EXPECT_EQ(told["missing"], nlohmann::json::parse("[[16,24]]"));
     EXPECT_EQ(told["chunks"].size(), 3U) << "what an earlier job did counts for nothing";
     record("12-14", "done", "[[12,14]]", "");
+    for (const int number : {12, 14}) put_picture(number);
     EXPECT_EQ(farm("status out").out.substr(0, 54), "out/shot.farm: 24 frames: 15 done, 0 failed, 9 missing");
+    // Of the task that was killed: two that it could not write down, and one that is no picture yet.
+    put_picture(16);
+    put_picture(17);
+    write("out/shot.0018.png", "");
+    const Outcome killed = farm("status out");
+    EXPECT_EQ(killed.out.substr(0, 54), "out/shot.farm: 24 frames: 17 done, 0 failed, 7 missing") << killed.out;
+    EXPECT_NE(killed.out.find("  begun: 18-20 on n1"), std::string::npos) << killed.out;
+    // A picture that was taken away is missing, whatever was written down.
+    fs::remove(path("out/shot.0003.png"));
+    EXPECT_NE(farm("status out").out.find("  missing: 3, 18-24\n"), std::string::npos);
+    for (int number = 1; number <= 24; ++number) put_picture(number);
+    const Outcome all = farm("status out");
+    EXPECT_EQ(all.code, 0);
+    EXPECT_EQ(all.out.substr(0, 55), "out/shot.farm: 24 frames: 24 done, 0 failed, 0 missing\n") << all.out;
 }
 
 TEST_F(FarmFiles, OtherDigitsOfNamesAreNoNumberOfAFrame) {

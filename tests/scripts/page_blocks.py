@@ -33,6 +33,7 @@ docs/embedding.md       glsl      CliPages.TomlAndGlslAreRead
 docs/embedding.md       sh,cmake  PageBuilds
 docs/errors.md          text      CliPages.WhatTheySayIsPrinted
 docs/farm.md            sh        CliPages.Farm
+docs/farm.md            yaml      CliPages.FarmsWithoutSlurm
 docs/hosts.md           c         ExampleSwapchain
 docs/hosts.md           cpp       ExampleVma
 docs/hosts.md           go        ExampleCgo

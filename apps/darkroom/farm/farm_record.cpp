@@ -9,9 +9,11 @@
 #include <string_view>
 
 #include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
+#include "image/frame/sequence.hpp"
 
 namespace app {
 
@@ -77,6 +79,18 @@ FrameNumbers numbers_of(const Json& json, const char* key) {
     return out;
 }
 
+FarmNames names_of(const Json& json) {
+    return {.input = text_of(json, "input"),
+            .output = text_of(json, "output"),
+            .is_folder = member(json, "output_is_folder", &Json::is_boolean).boolean()};
+}
+
+void add_names(Json& json, const FarmNames& names) {
+    json["input"] = names.input;
+    json["output"] = names.output;
+    json["output_is_folder"] = names.is_folder;
+}
+
 ChunkRecord record_of(const Json& json) {
     ChunkRecord out{.name = text_of(json, "chunk"),
                     .frames = numbers_of(json, "frames"),
@@ -91,6 +105,7 @@ ChunkRecord record_of(const Json& json) {
     const auto state = std::ranges::find(state_names, text_of(json, "state"));
     if (state == state_names.end()) throw Wrong{"state: allowed is begun, done or failed"};
     out.state = static_cast<ChunkState>(state - state_names.begin());
+    out.names = names_of(json);
     return out;
 }
 
@@ -107,6 +122,7 @@ FarmInputs inputs_of(const Json& json) {
 FarmJob job_of(const Json& json) {
     return {.arguments = texts_of(json, "arguments"),
             .inputs = inputs_of(json),
+            .names = names_of(json),
             .id = text_of(json, "job"),
             .frames = numbers_of(json, "frames"),
             .done = numbers_of(json, "done")};
@@ -170,19 +186,25 @@ FrameNumbers without(const FrameNumbers& numbers, const FrameNumbers& others) {
     return out;
 }
 
+fs::path FarmNames::picture(long long number) const {
+    return output_path(darkroom::numbered(input, number), number, output, is_folder);
+}
+
 Json json_of(const ChunkRecord& record) {
-    return {{"format", format},
-            {"chunk", record.name},
-            {"state", state_names[static_cast<std::size_t>(record.state)]},
-            {"frames", json_of(record.frames)},
-            {"done", json_of(record.done)},
-            {"made", record.made},
-            {"tries", record.tries},
-            {"seconds", record.seconds},
-            {"begun", record.begun},
-            {"node", record.node},
-            {"job", record.job},
-            {"errors", record.errors}};
+    Json out{{"format", format},
+             {"chunk", record.name},
+             {"state", state_names[static_cast<std::size_t>(record.state)]},
+             {"frames", json_of(record.frames)},
+             {"done", json_of(record.done)},
+             {"made", record.made},
+             {"tries", record.tries},
+             {"seconds", record.seconds},
+             {"begun", record.begun},
+             {"node", record.node},
+             {"job", record.job},
+             {"errors", record.errors}};
+    add_names(out, record.names);
+    return out;
 }
 
 // Text that is no UTF-8 is alike in both.
@@ -203,12 +225,14 @@ Result<> check_inputs(const fs::path& folder, const FarmJob& job, const FarmInpu
 Result<> write_job(const fs::path& folder, const FarmJob& job) {
     Json inputs = Json::object();
     for (const auto& [file, hash] : job.inputs) inputs[file] = hash;
-    return write(folder / job_file, {{"format", format},
-                                     {"job", job.id},
-                                     {"frames", json_of(job.frames)},
-                                     {"done", json_of(job.done)},
-                                     {"arguments", job.arguments},
-                                     {"inputs", std::move(inputs)}});
+    Json out{{"format", format},
+             {"job", job.id},
+             {"frames", json_of(job.frames)},
+             {"done", json_of(job.done)},
+             {"arguments", job.arguments},
+             {"inputs", std::move(inputs)}};
+    add_names(out, job.names);
+    return write(folder / job_file, out);
 }
 
 Result<> write_record(const fs::path& folder, const ChunkRecord& record) {

@@ -30,19 +30,29 @@ inline constexpr const char* farm_suffix = ".farm";
 /// The files that pictures are made of beside the frames, and the hashes of their contents.
 using FarmInputs = std::map<std::string, std::string>;
 
+/// What the pictures of a farm are called, as the farm was asked.
+struct FarmNames {
+    std::string input, output;
+    bool is_folder = false;  ///< the output is one
+
+    [[nodiscard]] std::filesystem::path picture(long long number) const;
+};
+
 struct FarmJob {
     std::vector<std::string> arguments;  ///< of each task, but for its frames
     FarmInputs inputs;                   ///< empty: nobody knows
-    std::string id;                      ///< Slurm's
-    FrameNumbers frames;                 ///< all that are asked for
-    FrameNumbers done;                   ///< those whose pictures were there when it was submitted
+    FarmNames names;
+    std::string id;       ///< Slurm's
+    FrameNumbers frames;  ///< all that are asked for
+    FrameNumbers done;    ///< those whose pictures were there when it was submitted
 };
 
 /// In the words of the file.
 enum class ChunkState { begun, done, failed };
 
 struct ChunkRecord {
-    std::string name;                      ///< "A-B", as the task was asked
+    std::string name;  ///< "A-B", as the task was asked
+    FarmNames names;
     FrameNumbers frames, done;             ///< those that there are, those whose pictures are there
     ChunkState state = ChunkState::begun;  ///< one that was killed has begun
     std::int64_t tries = 0, made = 0;      ///< made: pictures that were not there before

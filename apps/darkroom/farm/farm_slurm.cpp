@@ -167,7 +167,7 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
     if (!inputs) return failure(std::move(inputs));
     std::size_t chunk = usual_chunk;
     if (Result<> done = options.chunk.read_to(chunk); !done) return done;
-    FarmJob job{.arguments = options.work.task(), .inputs = std::move(*inputs)};
+    FarmJob job{.arguments = options.work.task(), .inputs = std::move(*inputs), .names = work->names};
     for (const FarmFrame& frame : work->frames) {
         job.frames.insert(frame.number);
         if (is_there(frame.picture)) job.done.insert(frame.number);

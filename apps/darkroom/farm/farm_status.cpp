@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
-// darkroom farm status: what is done, by the records beside the pictures alone.
+// darkroom farm status: what is done, by the records and by the pictures beside them: a task that was killed leaves
+// whole ones that it could not write down.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <string>
 
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
@@ -23,12 +27,37 @@ struct StatusOptions {
     bool is_json = false;
 };
 
-/// Each frame is in one of the three: a record that says done goes before one that says failed.
+/// Some pictures are not there.
+constexpr int exit_incomplete = 3;
+
+/// Each frame is in one of the three: a picture that is there goes before a record that says failed.
 struct Status {
     std::string folder, job;
     FrameNumbers frames, done, failed, missing;
     std::vector<ChunkRecord> chunks;
 };
+
+std::set<std::string> files_beside(const fs::path& folder) {
+    std::set<std::string> out;
+    std::error_code error;
+    const fs::path pictures = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+    for (fs::directory_iterator entry(pictures, error), end; !error && entry != end; entry.increment(error))
+        out.insert(entry->path().filename().string());
+    return out;
+}
+
+/// Those frames whose pictures are there. Who wrote one down has seen that it is whole; of the others the size tells,
+/// and only they are looked at one by one, since a file server answers for each.
+FrameNumbers numbers_there(const fs::path& folder, const std::set<std::string>& files, const FarmNames& names,
+                           const FrameNumbers& frames, const FrameNumbers& written_down) {
+    FrameNumbers out;
+    for (const long long number : frames) {
+        const fs::path name = names.picture(number).filename();
+        if (files.contains(name.string()) && (written_down.contains(number) || is_there(folder.parent_path() / name)))
+            out.insert(out.end(), number);
+    }
+    return out;
+}
 
 Result<Status> status_of(const fs::path& folder) {
     Result<std::optional<FarmJob>> job = read_job(folder);
@@ -36,12 +65,13 @@ Result<Status> status_of(const fs::path& folder) {
     Result<std::vector<ChunkRecord>> records = read_records(folder);
     if (!records) return failure(std::move(records));
     Status out{.folder = folder.string(), .chunks = std::move(*records)};
+    const std::set<std::string> files = files_beside(folder);
     if (*job) {
         out.job = (*job)->id;
         out.frames = (*job)->frames;
-        out.done = (*job)->done;
+        out.done = numbers_there(folder, files, (*job)->names, out.frames, (*job)->done);
     }
-    // What tasks of an earlier job did stands in `done`, unless its picture was taken away since.
+    // What tasks of an earlier job said of themselves is not what this one is about.
     if (!out.job.empty())
         std::erase_if(out.chunks, [&](const ChunkRecord& record) {
             return !record.job.empty() && !record.job.starts_with(out.job + "_");
@@ -49,7 +79,7 @@ Result<Status> status_of(const fs::path& folder) {
     FrameNumbers failed;
     for (const ChunkRecord& record : out.chunks) {
         out.frames.insert(record.frames.begin(), record.frames.end());
-        out.done.insert(record.done.begin(), record.done.end());
+        out.done.merge(numbers_there(folder, files, record.names, record.frames, record.done));
         if (record.state == ChunkState::failed) failed.insert(record.frames.begin(), record.frames.end());
     }
     out.failed = without(failed, out.done);
@@ -108,20 +138,23 @@ Result<std::vector<fs::path>> folders_in(fs::path folder) {
     return out;
 }
 
-Result<> run(const StatusOptions& options) {
+/// Gives the exit code.
+Result<int> run(const StatusOptions& options) {
     const Result<std::vector<fs::path>> folders = folders_in(options.folder);
     if (!folders) return failure(folders.error());
     Json documents = Json::array();
+    int code = exit_ok;
     for (const fs::path& folder : *folders) {
         const Result<Status> status = status_of(folder);
         if (!status) return failure(status.error());
+        if (status->done.size() < status->frames.size()) code = exit_incomplete;
         if (options.is_json)
             documents.push_back(document_of(*status));
         else
             print(*status);
     }
     if (options.is_json) answer((documents.size() == 1 ? documents.elements().front() : documents).dump(1));
-    return {};
+    return code;
 }
 
 }  // namespace
@@ -136,8 +169,8 @@ Command add_farm_status(CommandFlags farm) {
     command.add_option("FOLDER", options->folder, "Folder of the pictures, or NAME.farm in it").required();
     command.add_flag("--json", options->is_json, "One document for programs");
     return {command, [options] {
-                const Result<> done = run(*options);
-                return done ? exit_ok : fail(done.error());
+                const Result<int> code = run(*options);
+                return code ? *code : fail(code.error());
             }};
 }
 

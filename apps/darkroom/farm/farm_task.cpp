@@ -79,6 +79,7 @@ class Task {
         const std::vector<long long> numbers = frames->numbers();
         record_.name = frames->is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
                                           : darkroom::frame_set_text(numbers);
+        record_.names = work_.names;
         record_.node = node_name();
         record_.job = job_name();
         record_.begun = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));

@@ -134,11 +134,11 @@ Result<FarmWork> FarmFlags::work() const {
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
     const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));
-    const auto made = [&](std::int64_t number) {
-        return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));
-    };
+    FarmNames names{.input = input_, .output = out_, .is_folder = is_output_folder(out_)};
+    const fs::path records = farm_folder(names.picture(0), names.picture(9));
     return FarmWork{.frames = std::move(*frames),
-                    .folder = farm_folder(made(0), made(9)),
+                    .names = std::move(names),
+                    .folder = records,
                     .is_range = !asked_for || asked_for->is_range()};
 }
 

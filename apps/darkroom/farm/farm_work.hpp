@@ -23,8 +23,9 @@ struct FarmFrame {
 
 struct FarmWork {
     std::vector<FarmFrame> frames;  ///< in the order of their numbers
-    std::filesystem::path folder;   ///< of its records
-    bool is_range = true;           ///< false: between the first and the last there are some that are not asked for
+    FarmNames names;
+    std::filesystem::path folder;  ///< of its records
+    bool is_range = true;          ///< false: between the first and the last there are some that are not asked for
 };
 
 class FarmFlags {
@@ -34,7 +35,8 @@ class FarmFlags {
     [[nodiscard]] darkroom::Result<FarmWork> work() const;
     /// All that `develop` or `render` would refuse before it reads a frame or a scene, of flags and look. Gives what
     /// these were read from; models and their textures are not looked at.
-    [[nodiscard]] darkroom::Result<FarmInputs> check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const;
+    [[nodiscard]] darkroom::Result<FarmInputs> check(const FarmWork& work,
+                                                     std::span<const darkroom::LookEntry> named) const;
     /// Of the command that makes these frames: "develop", and so on.
     [[nodiscard]] std::vector<std::string> command(const std::string& frames) const;
     /// Of `farm task`, without --frames and its value, which go before these.
