@@ -140,7 +140,7 @@ def write(api):
                    f"{type_of(api, callback.result)} {callback.name}({parameters_of(api, callback)});\n")
     out += [struct_text(api, struct) for struct in api.vulkan_structs + api.structs]
     out.append("\npublic static unsafe class Native {\n")
-    out += [f"{docs(row['doc'], '    ')}    public const ulong {row['name']} = {row['value']};\n"
+    out += [f"{docs(row['doc'], '    ')}    public const {C_TYPES[row['type']]} {row['name']} = {row['value']};\n"
             for row in api.constants]
     for function in api.functions:
         out.append('    [DllImport("darkroom", CallingConvention = CallingConvention.Cdecl)]\n'

@@ -43,7 +43,7 @@ def procedure(api, function):
 def write(api):
     out = [api.head("Odin", "//"), "// Untested: it was never compiled.\n\npackage darkroom\n\n"
            'foreign import lib "system:darkroom"\n\n']
-    out += [f"{docs(row['doc'])}{row['name']} :: u64({row['value']})\n" for row in api.constants]
+    out += [f"{docs(row['doc'])}{row['name']} :: {C_TYPES[row['type']]}({row['value']})\n" for row in api.constants]
     out += [f"{docs(row['doc'])}{row['name']} :: {C_TYPES[row['type']]}\n" for row in api.aliases]
     out += [f"{docs(row['doc'])}{row['name']} :: distinct rawptr\n" for row in api.handles]
     for row in api.enums:

@@ -10,8 +10,8 @@ KEYWORDS = set("""as async await box break const continue dyn else enum extern f
     use virtual where while yield""".split())
 
 HEAD = '''//
-// A module, `mod darkroom;`. The functions of C are as they are there; those of `checked` return their error's text. A
-// struct's `Default` sets its size.
+// A module, `mod darkroom;`, for Rust 1.82 or later, in any edition. The functions of C are as they are there; those of
+// `checked` return their error's text. A struct's `Default` sets its size.
 
 #![allow(non_camel_case_types, dead_code)]
 
@@ -28,7 +28,7 @@ pub unsafe fn text(text: *const c_char) -> Option<String> {
     if text.is_null() {
         None
     } else {
-        Some(CStr::from_ptr(text).to_string_lossy().into_owned())
+        Some(unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned())
     }
 }
 
@@ -41,7 +41,7 @@ pub mod checked {
         if result == DARKROOM_OK {
             Ok(())
         } else {
-            Err(text(darkroom_error()).unwrap_or_default())
+            Err(unsafe { text(darkroom_error()) }.unwrap_or_default())
         }
     }
 '''
@@ -91,12 +91,12 @@ def struct_text(api, struct):
 def checked_text(api, function):
     names = ", ".join(name_of(parameter.name) for parameter in function.parameters)
     return (f"\n{docs(function.doc, '    ')}    pub unsafe fn {function.short_name()}({parameters_of(api, function)})"
-            f" -> Result<(), String> {{\n        check({function.name}({names}))\n    }}\n")
+            f" -> Result<(), String> {{\n        unsafe {{ check({function.name}({names})) }}\n    }}\n")
 
 
 def write(api):
     out = [api.head("Rust", "//"), HEAD]
-    out += [f"{docs(row['doc'], '')}pub const {row['name']}: u64 = {row['value']};\n" for row in api.constants]
+    out += [f"{docs(row['doc'], '')}pub const {row['name']}: {C_TYPES[row['type']]} = {row['value']};\n" for row in api.constants]
     for row in api.aliases:
         out.append(f"{docs(row['doc'], '')}pub type {row['name']} = {C_TYPES[row['type']]};\n")
     for row in api.handles:
@@ -112,7 +112,7 @@ def write(api):
                    f"Option<unsafe extern \"C\" fn({parameters_of(api, callback)}){result_of(api, callback)}>;\n")
     out.append("\n")
     out += [struct_text(api, struct) for struct in api.vulkan_structs + api.structs]
-    out.append('#[link(name = "darkroom")]\nextern "C" {\n')
+    out.append('#[link(name = "darkroom")]\nunsafe extern "C" {\n')
     for function in api.functions:
         out.append(f"{docs(function.doc, '    ')}    pub fn {function.name}({parameters_of(api, function)})"
                    f"{result_of(api, function)};\n")

@@ -53,7 +53,7 @@ def parameters_of(api, function):
 
 def write(api):
     out = [api.head("Zig", "//"), "// Untested: it was never compiled.\n\n"]
-    out += [f"{docs(row['doc'])}pub const {row['name']}: u64 = {row['value']};\n" for row in api.constants]
+    out += [f"{docs(row['doc'])}pub const {row['name']}: {C_TYPES[row['type']]} = {row['value']};\n" for row in api.constants]
     out += [f"{docs(row['doc'])}pub const {row['name']} = {C_TYPES[row['type']]};\n" for row in api.aliases]
     for row in api.handles:
         out.append(f"{docs(row['doc'])}pub const {row['name']} = ?*opaque {{}};\n")

@@ -59,7 +59,9 @@ TEST(CHeaderReader, ReadsEveryForm) {
     EXPECT_EQ(read->constants[0].name, "DARKROOM_TEN");
     EXPECT_EQ(read->constants[0].value, 10U);
     EXPECT_EQ(read->constants[0].doc, "Ten.");
+    EXPECT_EQ(read->constants[0].type, "uint32_t");
     EXPECT_EQ(read->constants[1].value, 4294967295U);
+    EXPECT_EQ(read->constants[1].type, "uint64_t");
     ASSERT_EQ(read->enums.size(), 1U);
     ASSERT_EQ(read->enums[0].values.size(), 2U);
     EXPECT_EQ(read->enums[0].values[1].name, "DARKROOM_ERROR");

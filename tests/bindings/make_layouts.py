@@ -22,9 +22,9 @@ def rust(structs):
 
     out = "use crate::darkroom::*;\nuse std::mem::{size_of, zeroed};\n"
     out += "fn size<T>(_: &T) -> usize {\n    size_of::<T>()\n}\n"
-    out += "#[rustfmt::skip]\npub unsafe fn print() {\n"
+    out += "#[rustfmt::skip]\npub fn print() {\n"
     for struct in structs:
-        out += f"    let s: {struct.name} = zeroed();\n"
+        out += f"    let s: {struct.name} = unsafe {{ zeroed() }};\n"
         out += f'    println!("{struct.name} {{}}", size_of::<{struct.name}>());\n'
         for member in struct.members:
             place = f"s.{name_of(member.name)}"

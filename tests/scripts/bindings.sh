@@ -14,6 +14,10 @@ esac
 for tool in "${needed[@]}"; do
     command -v "$tool" >/dev/null || { echo "left out: $tool is not here (Debian's $packages)" && exit 77; }
 done
+if [[ $language == rust ]]; then
+    minor=$(rustc --version | sed -E 's/^rustc 1\.([0-9]+).*/\1/')
+    [[ $minor -ge 85 ]] || { echo "left out: $(rustc --version) is older than 1.85, edition 2024" && exit 77; }
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export PYTHONDONTWRITEBYTECODE=1 LD_LIBRARY_PATH=${library%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
@@ -31,10 +35,16 @@ case $language in
     rust)
         cp "$tree/tests/bindings/host.rs" "$bindings/darkroom.rs" "$work"
         layouts rust >"$work/layout.rs"
-        rustc --edition 2021 -D warnings -L "${library%/*}" "$work/host.rs" -o "$work/host"
+        { cat "$work/example" && echo 'fn main() { stack().unwrap(); }'; } >"$work/example.rs"
+        # `cargo new` writes the newest edition, and older projects stay at theirs.
+        for edition in 2021 2024; do
+            rustc --edition $edition -D warnings -L "${library%/*}" "$work/host.rs" -o "$work/host"
+            rustc --edition $edition -D warnings -L "${library%/*}" -C link-arg=-Wl,-rpath,"${library%/*}" \
+                "$work/example.rs" -o "$work/example.out"
+        done
+        # It finds the library by itself, as the page says.
+        env -u LD_LIBRARY_PATH "$work/example.out"
         host=("$work/host")
-        { cat "$work/example" && echo 'fn main() { unsafe { stack().unwrap(); } }'; } >"$work/example.rs"
-        rustc --edition 2021 -D warnings -L "${library%/*}" "$work/example.rs" -o "$work/example.out"
         example=("$work/example.out")
         ;;
     csharp)

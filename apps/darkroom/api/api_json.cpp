@@ -40,7 +40,9 @@ Json json_of(const CFunction& function) {
             {"parameters", std::move(parameters)}};
 }
 Json json_of(const CConstant& constant) {
-    return {{"name", constant.name}, {"value", constant.value}, {"doc", constant.doc}};
+    Json out{{"name", constant.name}, {"value", constant.value}, {"doc", constant.doc}};
+    if (!constant.type.empty()) out["type"] = constant.type;
+    return out;
 }
 Json json_of(const CEnum& type) {
     Json values = Json::array();

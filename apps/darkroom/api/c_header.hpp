@@ -27,7 +27,7 @@ struct CVariable {
 struct CConstant {
     std::string name;
     std::uint64_t value = 0;
-    std::string doc;
+    std::string doc, type;  ///< type: empty of an enum's
 };
 /// A pointer to what only the library knows.
 struct CHandle {
