@@ -78,12 +78,15 @@ done
 
 # And by pkg-config.
 lines_of sh docs/install.md | grep -E '^(export PKG_CONFIG_PATH=|c\+\+ |cc )' >lines || fail "docs/install.md has no pkg-config"
-[[ $(wc -l <lines) == 3 ]] || fail "docs/install.md: other lines of pkg-config than three"
-sed -i "s|/opt/darkroom|$prefix|; /^c/s/ *#.*//; s/^c++ /c++ -O0 -o by_cpp /; s/^cc /cc -o by_c /" lines
+[[ $(wc -l <lines) == 4 ]] || fail "docs/install.md: other lines of pkg-config than four"
+[[ -f $prefix/lib/libdarkroom_c.a ]] || sed -i /darkroom-static/d lines
+sed -i "s|/opt/darkroom|$prefix|; /^c/s/ *#.*//; s/^c++ /c++ -O0 -o by_cpp /; /static/s/^cc /cc -o by_archive /; s/^cc -std/cc -o by_c -std/" lines
 quietly bash -e lines
-export LD_LIBRARY_PATH=$prefix/lib
-quietly ./by_cpp
-quietly ./by_c
+# As they are: nothing but those lines says where the library is.
+for program in by_cpp by_c by_archive; do
+    [[ ! -e $program ]] || quietly env -u LD_LIBRARY_PATH ./$program
+done
+[[ ! -e by_archive ]] || ! readelf -d by_archive | grep -q 'NEEDED.*darkroom' || fail "by_archive loads the library"
 
 # Removed again: what was installed last.
 DESTDIR=$work/stage quietly bash -c "cd '$work' && $(lines_of sh docs/install.md | grep -- '--target uninstall')"
