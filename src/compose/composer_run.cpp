@@ -284,7 +284,10 @@ PendingCompile Composer::pending() const try {
     return {.is_pending = false, .error = caught("pending").value()};
 }
 
-const Plan* Composer::current_plan() const { return state_->chain ? &state_->chain->plan() : nullptr; }
+const Plan* Composer::current_plan() const try { return state_->chain ? &state_->chain->plan() : nullptr; } catch (...) {
+    // There is no memory to tell it in.
+    return nullptr;
+}
 
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
     const auto start = std::chrono::steady_clock::now();

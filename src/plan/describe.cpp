@@ -173,6 +173,11 @@ std::map<std::uint32_t, std::uint32_t> passes_in_order(const Program& program, c
 
 Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
                       std::span<const Entry* const> entries) {
+    return describe_frame(program, compiled, desc, entries, example_values(program, desc, entries));
+}
+
+Plan describe_frame(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
+                    std::span<const Entry* const> entries, const FrameValues& values) {
     Plan plan{.extent = desc.max_extent,
               .passes = {},
               .images = {},
@@ -183,7 +188,6 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
     const graph::Extents largest = largest_extents(desc);
-    const FrameValues values = example_values(program, desc, entries);
     remark_domains(program, values, desc, entries, plan.remarks);
     if (desc.target_color) remark_target(program, values, *desc.target_color, entries, plan.remarks);
     for (std::uint32_t i = 0; i < entries.size(); ++i)

@@ -41,7 +41,8 @@ class Chain final : public Garbage {
     bool abandon();
     /// Builds the lean kernels of the present values on the calling thread, which is the one that records.
     [[nodiscard]] Result<> build_lean();
-    [[nodiscard]] const Plan& plan() const { return plan_; }
+    /// With the values of the last recording; before there is one, with those of the compile.
+    [[nodiscard]] const Plan& plan();
     [[nodiscard]] const CompileDesc& compiled_for() const { return desc_.compile; }
     [[nodiscard]] const std::shared_ptr<StackProgram>& program() const { return desc_.program; }
     [[nodiscard]] std::uint32_t slots() const { return desc_.slots; }
@@ -93,6 +94,7 @@ class Chain final : public Garbage {
     Worker& worker_;
     ChainDesc desc_;
     Plan plan_;
+    std::vector<std::uint32_t> described_;  ///< gates and values of plan_; empty: those of the compile
     std::vector<const plan::Entry*> entries_;  ///< those of desc_, to be read
     std::uint64_t recordings_ = 0;
     bool is_abandonable_ = false;

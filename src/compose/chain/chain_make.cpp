@@ -58,6 +58,19 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
     return chain;
 }
 
+const Plan& Chain::plan() {
+    if (recordings_ == 0) return plan_;
+    const plan::Program& program = program_of();
+    std::vector<std::uint32_t> now(values_.gates().begin(), values_.gates().end());
+    for (std::uint32_t i = 0; i < entries_.size(); ++i)
+        now.insert(now.end(), values_.words(i), values_.words(i) + entries_[i]->base.size());
+    if (now != described_) {
+        plan_ = plan::describe_frame(program, *compiled_, desc_.compile, entries_, values_);
+        described_ = std::move(now);
+    }
+    return plan_;
+}
+
 void Chain::derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame) {
     values_.evaluate(program_of(), desc_.compile, entries, context, desc_.compile.target_extent);
     schedule_->derive(values_.gates(), import_states_, frame);

@@ -191,6 +191,32 @@ TEST_F(ComposeEdit, ACompileThatIsHeldOpenHoldsNoRecording) {
     }
 }
 
+// Entries that are switched keep their place, and their passes come and go.
+TEST_F(ComposeEdit, ThePlanIsWhatRunsNow) {
+    const Host host(small_picture());
+    Composer composer(host.device);
+    add(composer, "exposure", {{"exposure", 2}});
+    const Handle blur = add(composer, "gaussian_blur", {{"radius", 3}});
+    add(composer, "negative");
+    const auto blurs = [&] {
+        return std::ranges::count_if(composer.current_plan()->passes,
+                                     [](const PlanPass& pass) { return pass.name.starts_with("gaussian_blur."); });
+    };
+    EXPECT_EQ(composer.current_plan(), nullptr);
+    must(composer.compile(host.compile_desc()));
+    const auto on = blurs();
+    EXPECT_GT(on, 0);
+    host.run(composer);
+    EXPECT_EQ(blurs(), on);
+    for (const bool is_on : {false, true, false}) {
+        must(composer.set_enabled(blur, is_on));
+        host.run(composer);
+        EXPECT_EQ(blurs(), is_on ? on : 0);
+        const Plan anew = must(composer.plan(host.compile_desc()));
+        EXPECT_EQ(composer.current_plan()->passes.size(), anew.passes.size());
+    }
+}
+
 TEST_F(ComposeEdit, AFailedCompileLeavesThePicture) {
     const Host host(small_picture());
     Composer composer(host.device);

@@ -63,4 +63,8 @@ class FrameValues {
 [[nodiscard]] FrameValues example_values(const Program& program, const CompileDesc& desc,
                                          std::span<const Entry* const> entries);
 
+/// describe_program() with the values of a frame.
+[[nodiscard]] Plan describe_frame(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
+                                  std::span<const Entry* const> entries, const FrameValues& values);
+
 }  // namespace darkroom::plan
