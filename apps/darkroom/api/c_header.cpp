@@ -121,7 +121,7 @@ class CParser {
         CConstant out{.name = peek().text, .doc = take_doc()};
         ++at_;
         // As C has it: a plain number has the type of the functions that return it.
-        out.type = is("UINT64_C") ? "uint64_t" : "uint32_t";
+        out.type = skip("UINT64_C") ? "uint64_t" : "uint32_t";
         if (!number(out.value, std::numeric_limits<std::int64_t>::max()) || !add_name(out.name)) return false;
         header_.constants.push_back(std::move(out));
         return true;

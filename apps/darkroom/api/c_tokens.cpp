@@ -88,11 +88,12 @@ class Lines {
         const std::string_view name = take(line, is_part);
         line = trimmed(line);
         constexpr std::string_view wide = "UINT64_C(";
-        if (line.starts_with(wide) && line.ends_with(')'))
-            line = line.substr(wide.size(), line.size() - wide.size() - 1);
+        const bool is_wide = line.starts_with(wide) && line.ends_with(')');
+        if (is_wide) line = line.substr(wide.size(), line.size() - wide.size() - 1);
         if (name.empty() || line.empty() || !std::ranges::all_of(line, is_digit))
             return "expected #define NAME NUMBER, the number as digits or UINT64_C(digits)";
         add(CToken::Kind::Define, name);
+        if (is_wide) add(CToken::Kind::Name, wide.substr(0, wide.size() - 1));
         add(CToken::Kind::Number, line);
         return {};
     }
