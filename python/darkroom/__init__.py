@@ -9,14 +9,15 @@
     for picture in stack.sequence(frames, fps=24):            # histories live
         ...
 
-Pictures are arrays of height x width x 3 or 4: float16 and float32 are scene-linear light, uint8 code values of sRGB.
+Pictures are arrays of height x width x 3 or 4: float16 and float32 are scene-linear light, uint8 and
+uint16 code values of sRGB.
 Every effect is a function here and a method of Stack. Scenes, picture files and other tables are in darkroom.files.
 """
 
 from . import _effects, _engine
 from ._compare import Comparison, compare
 from ._device import device, devices, free, use_device
-from ._error import Error
+from ._error import Error, nearest
 from ._frame import Camera, Frame, Light
 from ._stack import Stack, develop
 from ._table import Table
@@ -48,7 +49,8 @@ def info(effect: str | None = None) -> dict:
             "effects": effect_names(),
         }
     if effect not in _effects.EFFECTS:
-        raise Error(f"no effect '{effect}': there are {', '.join(effect_names())}")
+        near = nearest(effect, effect_names()) or ":"
+        raise Error(f"no effect '{effect}'{near} there are {', '.join(effect_names())}")
     return _effects.EFFECTS[effect]
 
 
@@ -58,4 +60,4 @@ def __getattr__(name):
         import importlib
 
         return importlib.import_module(".files", __name__)
-    raise AttributeError(f"module 'darkroom' has no attribute '{name}'")
+    raise AttributeError(f"module 'darkroom' has no attribute '{name}'{nearest(name, __all__)}")

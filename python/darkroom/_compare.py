@@ -7,7 +7,7 @@ import numpy
 
 from . import _engine
 from ._error import Error
-from ._frame import as_array
+from ._frame import as_array, from_codes16
 
 
 @dataclasses.dataclass
@@ -42,4 +42,5 @@ def compare(reference, test, *, is_linear: bool | None = None, pixels_per_degree
         if kinds[0] != kinds[1]:
             raise Error("compare: bytes and floats: is_linear says what the floats are")
         is_linear = kinds[0] == "f"
-    return Comparison(**_engine.compare(reference, test, is_linear, pixels_per_degree))
+    pictures = from_codes16(reference), from_codes16(test)
+    return Comparison(**_engine.compare(*pictures, is_linear, pixels_per_degree))

@@ -3,9 +3,11 @@
 
 import inspect
 
+import numpy
+
 from . import _device, _engine
 from ._error import Error
-from ._frame import as_array
+from ._frame import as_array, from_codes16, is_codes16
 from ._stack import Stack, develop_one, value_texts, with_layers
 
 TYPES = {
@@ -80,10 +82,16 @@ def _signature(first, effect, others, returned):
 
 def output_of(image, is_last_step):
     """What a function makes of such an array: bytes of bytes, light of light; but codes where the effect makes them."""
-    image = as_array(image, "color")
     if getattr(image, "dtype", None) == "uint8":
         return "encoded8"
-    return "encoded" if is_last_step else "linear"
+    return "encoded" if is_last_step or is_codes16(image) else "linear"
+
+
+def as_given(picture, image):
+    """A picture in the samples of the array that it was made of, as far as output_of has not seen to it."""
+    if is_codes16(image):
+        return numpy.rint(numpy.clip(picture, 0, 1) * numpy.float32(65535)).astype(numpy.uint16)
+    return picture.astype("float16") if getattr(image, "dtype", None) == "float16" else picture
 
 
 def make_function(effect):
@@ -92,19 +100,19 @@ def make_function(effect):
     def function(image, /, **values):
         given = {key: values.pop(key) for key in layers if key in values}
         if "second" in values:
-            values["second"] = as_array(values["second"], f"{name}.second")
+            values["second"] = from_codes16(as_array(values["second"], f"{name}.second"))
         look = _engine.Look()
         entry = look.add(name, "", "", value_texts(values, name))
         # An amount of 0 switches an entry off; here it was asked for.
         if values.get("enabled", True):
             look.set(entry, [("enabled", "on")])
         frame = with_layers(image, given)
-        runner = _device.runner(name, output_of(frame.color, effect["is_last_step"]))
+        color = as_array(frame.color, "color")
+        runner = _device.runner(name, output_of(color, effect["is_last_step"]))
         picture = develop_one(runner, look, frame)
         for text in runner.left_out():
             raise Error(text)
-        is_half = getattr(as_array(frame.color, "color"), "dtype", None) == "float16"
-        return picture.astype("float16") if is_half else picture
+        return as_given(picture, color)
 
     others = [_keyword("opacity", 1.0, "float"), _keyword("blend", "mix", "str")]
     if effect["has_second"]:

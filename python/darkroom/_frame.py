@@ -3,19 +3,75 @@
 
 import dataclasses
 import math
+import os
+import sys
 import warnings
 
 import numpy
 
-from ._error import Error
+from ._error import Error, nearest
 
 _CPU = 1  # DLPack's DLDeviceType kDLCPU
+_FOLDER = os.path.dirname(__file__)
+_said = set()
+
+
+def say_once(text):
+    """A warning where the package was called, the first time."""
+    if text in _said:
+        return
+    _said.add(text)
+    level, caller = 1, sys._getframe()
+    while caller and caller.f_code.co_filename.startswith(_FOLDER):
+        level, caller = level + 1, caller.f_back
+    warnings.warn(text, stacklevel=level)
 
 
 def as_array(given, name):
-    """A numpy array over the memory of an array of another library: by DLPack, else by numpy's own protocols."""
+    """A numpy array over the memory of an array of another library, floats of 64 bits and more as those of 32."""
+    array = _as_numpy(given, name)
+    if isinstance(array, numpy.ndarray) and array.dtype.kind == "f" and array.dtype.itemsize > 4:
+        say_once(f"{name}: dtype {array.dtype}: it is converted to float32, here and from now on")
+        array = array.astype(numpy.float32)
+    return array
+
+
+def is_codes16(array):
+    """Code values of sRGB in 16 bits."""
+    return isinstance(array, numpy.ndarray) and array.dtype == numpy.uint16
+
+
+def from_codes16(array):
+    """The same from 0 to 1, as the engine has them of bytes."""
+    return array.astype(numpy.float32) / numpy.float32(65535) if is_codes16(array) else array
+
+
+def _linear_of_codes16():
+    # IEC 61966-2-1:1999, 5.2.
+    codes = numpy.arange(65536, dtype=numpy.float64) / 65535
+    return numpy.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4).astype(numpy.float32)
+
+
+_linear16 = None
+
+
+def as_color(given):
+    """The colour of a frame: uint16 as the light that its code values stand for, alpha as it is."""
+    global _linear16
+    array = as_array(given, "color")
+    if not is_codes16(array) or array.ndim != 3:
+        return array
+    if _linear16 is None:
+        _linear16 = _linear_of_codes16()
+    out = from_codes16(array)
+    out[..., :3] = _linear16[array[..., :3]]
+    return out
+
+
+def _as_numpy(given, name):
+    """By DLPack, else by numpy's own protocols."""
     if isinstance(given, numpy.ndarray):
-        return given
+        return given if given.dtype.isnative else given.astype(given.dtype.newbyteorder("="))
     if hasattr(given, "__dlpack__") and hasattr(given, "__dlpack_device__"):
         kind = int(given.__dlpack_device__()[0])
         if kind != _CPU:
@@ -157,7 +213,7 @@ class Frame:
     """One frame: its colour, and what a renderer knows beside it. Arrays of height x width (x channels), top row first.
 
     color: red, green, blue, and alpha if there is one. Floats (float16, float32) are scene-linear light in Rec. 709;
-    uint8 are code values of sRGB. depth: distance along the view axis; 1e9 and more is sky. normals: x, y, z in world
+    uint8 and uint16 are code values of sRGB. depth: distance along the view axis; 1e9 and more is sky. normals: x, y, z in world
     space. velocity: x, y, the previous position minus the present one, in pixels, y down. reactive: 0 to 1.
     transparency: the colour before anything transparent was drawn. exposure: a number, what light is multiplied by.
     ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. lights: darkroom.Light of each. time:
@@ -185,7 +241,7 @@ class Frame:
     def _described(self, camera, time, delta_time, frame_index):
         """What the engine takes; `camera` as Camera._described has it."""
         out = {
-            "color": as_array(self.color, "color"),
+            "color": as_color(self.color),
             "camera": camera,
             "lights": [light._described(f"lights[{number}]") for number, light in enumerate(self.lights)],
             "time": float(time if self.time is None else self.time),
@@ -216,7 +272,8 @@ def as_frame(given):
         known = {field.name for field in dataclasses.fields(Frame)}
         unknown = sorted(set(given) - known - {"picture"})
         if unknown:
-            raise Error(f"frame: no layer '{unknown[0]}': allowed is {', '.join(sorted(known))}")
+            near = nearest(unknown[0], known) or ":"
+            raise Error(f"frame: no layer '{unknown[0]}'{near} allowed is {', '.join(sorted(known))}")
         return Frame(**{name: layer for name, layer in given.items() if name in known})
     return Frame(given)
 

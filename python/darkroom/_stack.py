@@ -7,8 +7,8 @@ import os
 import numpy
 
 from . import _device, _engine
-from ._error import Error
-from ._frame import Camera, Frame, as_array, as_frame, size_of, warn
+from ._error import Error, nearest, of_file
+from ._frame import Camera, Frame, as_array, as_frame, from_codes16, size_of, warn
 from ._table import Table
 
 _numbers = itertools.count()
@@ -29,7 +29,7 @@ def value_text(value, name):
     if isinstance(value, (float, numpy.floating)):
         return repr(float(value))
     if hasattr(value, "ndim") and getattr(value, "ndim") == 3:
-        return as_array(value, name)
+        return from_codes16(as_array(value, name))
     try:
         items = list(value)
         if items and all(hasattr(item, "__len__") and len(item) == 2 for item in items):
@@ -62,7 +62,8 @@ class Stack:
         elif isinstance(look, Stack):
             self._look = look._look.copy()
         elif isinstance(look, (str, os.PathLike)):
-            self._look, warnings = _engine.Look.read(os.fspath(look), allows_custom_effects)
+            with of_file(look):
+                self._look, warnings = _engine.Look.read(os.fspath(look), allows_custom_effects)
         else:
             raise Error(f"look: a {type(look).__name__}: allowed is the path of a look, or a Stack")
         warn(warnings)
@@ -118,6 +119,11 @@ class Stack:
 
     def __contains__(self, entry) -> bool:
         return entry in self._look.names
+
+    def __getattr__(self, name):
+        from ._effects import EFFECTS
+
+        raise AttributeError(f"a stack has no effect '{name}'{nearest(name, EFFECTS)}", name=name, obj=self)
 
     def __repr__(self) -> str:
         return f"<darkroom.Stack: {', '.join(self.names) or 'empty'}>"
@@ -211,7 +217,7 @@ def develop(image, look=None, *, output: str = "encoded8", size=None, **layers):
     """Develops a picture, as `darkroom develop` does.
 
     image: an array of height x width x 3 or 4, or a Frame, or a dictionary of layers. float16 and float32 are
-    scene-linear light in Rec. 709; uint8 are code values of sRGB. look: the file of a look (TOML), a Stack, or None for
+    scene-linear light in Rec. 709; uint8 and uint16 are code values of sRGB. look: the file of a look (TOML), a Stack, or None for
     the default. layers: depth, normals, velocity, camera and so on, as darkroom.Frame has them. output: "encoded8",
     bytes for the screen (sRGB, uint8); "encoded", the same before it is rounded (float32); "linear", scene-linear light
     (float32). size: (width, height) of the picture where it is another than the frame's.

@@ -6,7 +6,7 @@ import os
 import numpy
 
 from . import _engine
-from ._error import Error
+from ._error import Error, of_file
 
 
 class Table:
@@ -30,7 +30,8 @@ class Table:
     @classmethod
     def read(cls, path) -> "Table":
         """A .cube file (Adobe, "Cube LUT Specification", version 1.0, 2013). darkroom.files.table reads others."""
-        return cls._of(_engine.Table.read(os.fspath(path)))
+        with of_file(path):
+            return cls._of(_engine.Table.read(os.fspath(path)))
 
     @classmethod
     def identity(cls, size: int = 33) -> "Table":

@@ -17,7 +17,7 @@ import zlib
 import numpy
 
 from . import _exr
-from ._error import Error
+from ._error import Error, of_file
 from ._frame import Camera, Light, as_array, as_frame
 from ._stack import Stack
 from ._table import Table
@@ -115,7 +115,8 @@ def read_frame(path) -> dict:
 
     Colour has alpha where the file has it.
     """
-    part, parts = _exr.read(path)
+    with of_file(path):
+        part, parts = _exr.read(path)
     planes = part.planes
     out = {"color": _stack(planes, "RGBA") if "A" in planes else _stack(planes, "RGB")}
     if out["color"] is None:
@@ -201,7 +202,7 @@ def render(scene, *, size=(1920, 1080), look=None, time: float | None = None, fl
 
 def read(path):
     """The picture in a file that `darkroom develop` reads (EXR, PNG, JPEG, TIFF, WebP, HDR): scene-linear float32."""
-    with tempfile.TemporaryDirectory(prefix="darkroom-") as folder:
+    with of_file(path), tempfile.TemporaryDirectory(prefix="darkroom-") as folder:
         look, out = os.path.join(folder, "unchanged.toml"), os.path.join(folder, "out.exr")
         with open(look, "w", encoding="utf-8") as file:
             file.write(_UNCHANGED)
@@ -210,20 +211,22 @@ def read(path):
 
 
 def write(path, picture) -> None:
-    """Writes a picture: uint8 as .png, floats as .exr. Other formats: `run("develop", "picture.exr", ...)`."""
+    """Writes a picture: uint8 and uint16 as .png, floats as .exr. Other formats: `run("develop", "picture.exr", ...)`."""
     path, picture = os.fspath(path), as_array(picture, "picture")
     if path.endswith(".exr"):
         return write_frame(path, picture)
-    is_picture = picture.ndim == 3 and picture.shape[2] in (3, 4) and picture.dtype == numpy.uint8
+    is_picture = picture.ndim == 3 and picture.shape[2] in (3, 4) and picture.dtype in (numpy.uint8, numpy.uint16)
     if not path.endswith(".png") or not is_picture:
-        raise Error(f"{path}: {picture.dtype}, shape {picture.shape}: allowed are .png of uint8 and .exr of floats")
+        raise Error(f"{path}: {picture.dtype}, shape {picture.shape}: allowed are .png of uint8 or uint16 and .exr of floats")
     height, width, channels = picture.shape
+    bits = 8 * picture.dtype.itemsize
+    samples = picture.astype(picture.dtype.newbyteorder(">")).reshape(height, -1).view(numpy.uint8)
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    head = struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0)
-    rows = numpy.concatenate([numpy.zeros((height, 1), numpy.uint8), picture.reshape(height, -1)], axis=1)
+    head = struct.pack(">IIBBBBB", width, height, bits, 2 if channels == 3 else 6, 0, 0, 0)
+    rows = numpy.concatenate([numpy.zeros((height, 1), numpy.uint8), samples], axis=1)
     parts = [chunk(b"IHDR", head), chunk(b"sRGB", b"\0"), chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))]
     with open(path, "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n" + b"".join(parts) + chunk(b"IEND", b""))
@@ -231,7 +234,8 @@ def write(path, picture) -> None:
 
 def info(path) -> dict:
     """What `darkroom info` tells of a file: a picture, a frame, a look, a scene, a table."""
-    return json.loads(run("info", path, "--json"))
+    with of_file(path):
+        return json.loads(run("info", path, "--json"))
 
 
 def compare(reference, test) -> dict:
@@ -241,7 +245,7 @@ def compare(reference, test) -> dict:
 
 def table(path) -> Table:
     """A colour table in any format that `darkroom lut convert` reads: .cube .3dl .spi1d .spi3d .csp .clf, a HaldCLUT."""
-    with tempfile.TemporaryDirectory(prefix="darkroom-") as folder:
+    with of_file(path), tempfile.TemporaryDirectory(prefix="darkroom-") as folder:
         out = os.path.join(folder, "table.cube")
         run("lut", "convert", path, "-o", out)
         return Table.read(out)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""make_stubs.py OUT.pyi: writes the package's types, for editors and type checkers. Run while the package is built, with
-it in the path; what is written here by hand is checked against the package by its tests."""
+"""make_stubs.py OUT.pyi: writes the types of the package in OUT's folder, for editors and type checkers. Run while the
+package is built; what is written here by hand is checked against the package by its tests."""
 
 import inspect
+import pathlib
 import sys
 
-import darkroom
-from darkroom import _effects
+# Before what the environment says, which is where numpy is.
+sys.path.insert(0, str(pathlib.Path(sys.argv[1]).resolve().parents[1]))
+
+import darkroom  # noqa: E402
+from darkroom import _effects  # noqa: E402
 
 HEAD = '''# Made by make_stubs.py from the effects of this build.
 from os import PathLike

@@ -29,7 +29,8 @@ std::string allowed_shape(const LayerRules& rules) {
 }
 
 const char* shorter_samples(const LayerRules& rules) {
-    if (rules.takes_bytes) return "uint8, float16 or ";
+    // Of these the package converts what is missing here.
+    if (rules.takes_bytes) return "uint8, uint16, float16, float64 or ";
     return rules.takes_halves ? "float16 or " : "";
 }
 

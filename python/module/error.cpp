@@ -31,7 +31,9 @@ void raise(const Error& error) {
     // Paths are bytes, and need not be text.
     const py::object text = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(error.text.data(), static_cast<py::ssize_t>(error.text.size()), "backslashreplace"));
-    PyErr_SetObject(type.ptr(), type(text, fault, name_of(error.code)).ptr());
+    // Of the kind that it makes of itself by its fault.
+    const py::object made = type(text, fault, name_of(error.code));
+    PyErr_SetObject(py::type::of(made).ptr(), made.ptr());
     throw py::error_already_set();
 }
 

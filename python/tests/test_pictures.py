@@ -6,11 +6,12 @@ import sys
 import threading
 import time
 import unittest
+import warnings
 
 import numpy
 
 import darkroom
-from darkroom import _device, _stack
+from darkroom import _device, _frame, _stack
 from support import Case, light
 
 
@@ -78,10 +79,10 @@ class Arrays(Case):
         self.assertSame(darkroom.bloom(light(), intensity=0.5), stack.develop(light(), output="linear"))
 
     def test_what_cannot_be_read_is_refused(self):
-        allowed = "allowed is uint8, float16 or float32"
+        allowed = "allowed is uint8, uint16, float16, float64 or float32"
         wrong = [
-            (light().astype(numpy.float64), f"color: dtype float64: {allowed}"),
-            (light().astype(">f4"), f"color: dtype >f4: {allowed}"),
+            (light().astype(numpy.int32), f"color: dtype int32: {allowed}"),
+            (light().astype(numpy.complex64), f"color: dtype complex64: {allowed}"),
             (light()[..., 0], "color: shape (27, 48): allowed is (height, width, 3 or 4), none of them 0"),
             (light()[:0], "color: shape (0, 48, 3): allowed is (height, width, 3 or 4), none of them 0"),
             ([[1.0]], "color: a list: allowed is a numpy array, or what exports one (__dlpack__, __array__)"),
@@ -92,8 +93,33 @@ class Arrays(Case):
         self.assertRaisesText(shape, darkroom.develop, light(), depth=numpy.ones((27, 47), numpy.float32))
         text = "normals: shape (27, 48, 2): allowed is (height, width, 3), none of them 0"
         self.assertRaisesText(text, darkroom.develop, light(), normals=numpy.ones((27, 48, 2), numpy.float32))
-        with self.assertRaisesRegex(darkroom.Error, "^frame: no layer 'deepth': allowed is camera, color, "):
+        with self.assertRaisesRegex(darkroom.Error, "^frame: no layer 'deepth', did you mean 'depth'. allowed is camera"):
             darkroom.develop(light(), deepth=1)
+
+    def test_longer_floats_are_converted_and_that_is_said_once(self):
+        _frame._said.clear()
+        stack, expected = darkroom.Stack.default(), darkroom.develop(light())
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            for array in (light().astype(numpy.float64), light().astype(numpy.float64), light().astype(">f8")):
+                self.assertSame(stack.develop(array), expected)
+        texts = [(str(one.message), one.filename) for one in caught]
+        self.assertEqual(texts, [("color: dtype float64: it is converted to float32, here and from now on", __file__)])
+        self.assertSame(darkroom.exposure(light().astype(numpy.float64), exposure=2), light() * numpy.float32(2))
+        self.assertSame(darkroom.develop(light().astype(">f4")), expected)
+
+    def test_16_bits_are_code_values(self):
+        codes = darkroom.develop(light())
+        wide = codes.astype(numpy.uint16) * numpy.uint16(257)
+        # The same picture in either: what the device decodes bytes by is within a code of the standard's curve.
+        apart = darkroom.develop(wide).astype(int) - darkroom.develop(codes).astype(int)
+        self.assertLessEqual(numpy.abs(apart).max(), 1)
+        # Given back as they came, finer than bytes are, with alpha.
+        fine = numpy.dstack([numpy.arange(0, 65536, 19, dtype=numpy.uint16)[:3200].reshape(40, 80)] * 4)
+        back = darkroom.exposure(fine, exposure=1.0)
+        self.assertEqual((back.dtype, back.shape), (numpy.uint16, fine.shape))
+        self.assertLessEqual(numpy.abs(back.astype(int) - fine.astype(int)).max(), 24)  # halves on the way
+        self.assertEqual(darkroom.compare(wide, codes).max_error, 0)
 
     def test_layers_are_read(self):
         depth = numpy.full((27, 48), 50.0, numpy.float32)
@@ -130,6 +156,30 @@ class Errors(Case):
             darkroom.develop(light(), camera=darkroom.Camera(fov=180))
         with self.assertRaisesRegex(darkroom.Error, "nosuch.toml"):
             darkroom.develop(light(), "nosuch.toml")
+
+    def test_they_are_also_what_python_calls_such_errors(self):
+        with self.assertRaises(ValueError):
+            darkroom.bloom(light(), intensity=99)
+        for call in (darkroom.Stack, darkroom.Table.read, darkroom.files.read_frame):
+            with self.assertRaises(FileNotFoundError) as caught:
+                call("nosuch.file")
+            self.assertIsInstance(caught.exception, darkroom.Error)
+        with self.assertRaises(OSError) as caught:
+            darkroom.Stack().bloom().save("no such folder/look.toml")
+        self.assertEqual(caught.exception.fault, "machine")
+        for kind in (ValueError, OSError):
+            self.assertNotIsInstance(darkroom.Error("text", "machine" if kind is ValueError else "user"), kind)
+        lost = pickle.loads(pickle.dumps(darkroom.Error("lost", "machine", "device_lost")))
+        self.assertEqual((str(lost), lost.fault, lost.code, lost.errno), ("lost", "machine", "device_lost", None))
+
+    def test_unknown_names_tell_the_nearest(self):
+        with self.assertRaisesRegex(darkroom.Error, "^no effect 'blom', did you mean 'bloom'. there are "):
+            darkroom.info("blom")
+        with self.assertRaisesRegex(AttributeError, "did you mean 'vignette'"):
+            darkroom.Stack().vignete()
+        with self.assertRaisesRegex(AttributeError, "did you mean 'develop'"):
+            darkroom.develope
+        self.assertFalse(hasattr(darkroom.Stack(), "qqq"))
 
 
 class Threads(Case):
