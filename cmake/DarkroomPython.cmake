@@ -1,6 +1,7 @@
 # Sets DARKROOM_PYTHON_PROGRAM, an interpreter for which the package darkroom is built, and DARKROOM_PYTHON_FACTS: its
 # headers, those of pybind11, and how a module's name ends. It is the first with numpy, pybind11 and setuptools, so that
 # one of a user's own that stands before the system's is passed over where it lacks them. Empty: none, or not asked for.
+# DARKROOM_PYTHON_PYBIND11 names a folder of headers in place of that pybind11's.
 
 set(facts "")
 set(program "")
@@ -29,6 +30,10 @@ if(is_wanted)
     message(FATAL_ERROR "DARKROOM_PYTHON=ON: no python3 has its headers (python3-dev), numpy, pybind11, setuptools and "
       "wheel; DARKROOM_PYTHON_INTERPRETER names one")
   endif()
+endif()
+if(program AND DARKROOM_PYTHON_PYBIND11)
+  list(REMOVE_AT facts 1)
+  list(INSERT facts 1 ${DARKROOM_PYTHON_PYBIND11})
 endif()
 set(DARKROOM_PYTHON_PROGRAM ${program})
 set(DARKROOM_PYTHON_FACTS ${facts})
