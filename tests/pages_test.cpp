@@ -354,7 +354,8 @@ constexpr std::string_view qsub = R"(qsub() {
 )";
 TEST_F(CliPages, Farm) {
     // Nothing is submitted: the lines that ask for progress tell of what a task has made, and one picture is missing.
-    ASSERT_EQ(run_lines("darkroom farm task 'shot.####.exr' --look my.toml -o out/ --mkdir --frames 1").code, 0);
+    write("shot.0002.exr", "no frame");
+    ASSERT_EQ(run_lines("darkroom farm task 'shot.####.exr' --look my.toml -o out/ --mkdir --frames 1-2").code, 1);
     std::size_t run = 0;
     for (const char* const page : {"docs/farm.md", "docs/command_line.md"})
         for (const auto& [kind, text] : blocks_of_page(page)) {
