@@ -13,6 +13,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import time
 
 from setuptools import Distribution, setup
@@ -120,8 +121,11 @@ def package():
 class BuildPackage(build_py):
     def run(self):
         to = pathlib.Path(self.build_lib) / "darkroom"
+        # A folder that was built in before may hold the module of another interpreter, and files that are gone.
+        known = {file.name for file in (root / "python/darkroom").iterdir() if file.is_file()}
+        known |= {"__init__.pyi", "_engine" + sysconfig.get_config_var("EXT_SUFFIX")}
         shutil.rmtree(to, ignore_errors=True)
-        shutil.copytree(package(), to, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(package(), to, ignore=lambda folder, names: set(names) - known)
 
 
 class HasModule(Distribution):

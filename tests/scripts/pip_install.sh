@@ -30,8 +30,11 @@ install
 ! grep ' Building CXX object ' "$work/build/build.log" || fail "the second time compiles"
 echo "pip_install: the second time takes $((SECONDS - start)) s"
 
+# What another interpreter left in that folder is no part of the wheel.
+touch "$work/build/python/darkroom/_engine.cpython-30-other.so"
 venv=$work/darkroom-python
 (cd "$tree" && "$venv/bin/pip" wheel -q --no-deps -w "$work" .)
+[[ $("$venv/bin/python" -m zipfile -l "$work"/darkroom-*.whl | grep -c _engine) == 1 ]] || fail "the wheel holds more than one module"
 for numpy in 'numpy<2' 'numpy>=2'; do
     "$venv/bin/pip" install -q "$numpy" || { echo "left out: $numpy is not there for $("$venv/bin/python" --version)" && continue; }
     "$venv/bin/pip" install -q --no-deps --force-reinstall "$work"/darkroom-*.whl
