@@ -206,11 +206,11 @@ TEST_F(ComposeEdit, ThePlanIsWhatRunsNow) {
     must(composer.compile(host.compile_desc()));
     const auto on = blurs();
     EXPECT_GT(on, 0);
-    host.run(composer);
+    (void)host.run(composer);
     EXPECT_EQ(blurs(), on);
     for (const bool is_on : {false, true, false}) {
         must(composer.set_enabled(blur, is_on));
-        host.run(composer);
+        (void)host.run(composer);
         EXPECT_EQ(blurs(), is_on ? on : 0);
         const Plan anew = must(composer.plan(host.compile_desc()));
         EXPECT_EQ(composer.current_plan()->passes.size(), anew.passes.size());
