@@ -294,6 +294,8 @@ class Writer:
                 arguments.append(f"{word}.as_mut_ptr()")
                 gives.append((f"[{self.base(type.name)}; {type.length}]", word))
             elif type.name == "DarkroomEffect":
+                # That of a file goes with its object, and with the entries that hold it.
+                is_unsafe = True
                 before.append(f"let mut {word} = std::ptr::null_mut();")
                 arguments.append(f"&mut {word}")
                 gives.append(("Effect<'_>", f"Effect({word}, PhantomData)"))
@@ -336,7 +338,8 @@ class Writer:
         if function.can_fail:
             value, result = f"Ok({value})", f"Result<{result}, Error>"
         safety = ("    ///\n    /// # Safety\n    /// What is handed over is Vulkan's or the host's, and as `darkroom.h` says. The composer goes when its\n"
-                  "    /// recordings have finished, and what a device was adopted with outlives all that was made on it.\n" if is_unsafe else "")
+                  "    /// recordings have finished, and what a device was adopted with outlives all that was made on it. An effect of\n"
+                  "    /// a file is used while its entry is there.\n" if is_unsafe else "")
         body = "".join(f"        {line}\n" for line in [*before, *calls, *after] + ([value] if value != "()" else []))
         arrow = f" -> {result}" if result != "()" else ""
         return (f"{docs(function.doc, '    ')}{safety}    pub {'unsafe ' if is_unsafe else ''}fn {name_of(name)}"
