@@ -51,6 +51,7 @@ docs/looks.md           toml      CliPages.TomlAndGlslAreRead
 docs/looks.md           sh        CliPages.LooksScenesAndProbing
 docs/looks.md           cpp       PageCode
 docs/looks.md           shown     CliPages.WhatTheySayIsPrinted
+docs/packaging.md       sh        PageBuilds
 docs/probe.md           sh        CliPages.LooksScenesAndProbing
 docs/probe.md           shown     CliProbe
 docs/python.md          python    Python
