@@ -13,6 +13,7 @@
 #include "apps/darkroom/verify/verify_flags.hpp"
 #include "apps/verify/verify_report.hpp"
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 
 namespace app {
@@ -51,8 +52,10 @@ Result<> check_outputs(const VerifyFlags& flags) {
     if (!folder.empty() && fs::weakly_canonical(report, error) == fs::weakly_canonical(own, error))
         return user_error(fmt::format("--report {}: would be written by -o {}, too", printable(report.string()),
                                       printable(folder.string())));
-    // What is written in place, such as a pipe, is not tried.
-    if (fs::exists(report, error) && fs::is_other(report, error)) return {};
+    // What is written in place, such as /dev/stdout, is not tried. A pipe may have nobody at its other end.
+    if (fs::exists(report, error) && fs::is_other(report, error) && !fs::is_fifo(fs::symlink_status(report, error)))
+        return {};
+    if (Result<> done = darkroom::check_own_file(report); !done) return done;
     return check_output(report, FileSet({}));
 }
 

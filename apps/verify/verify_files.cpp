@@ -9,6 +9,7 @@
 
 #include "apps/verify/verify_report.hpp"
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
@@ -125,7 +126,7 @@ std::string cube_of(const darkroom::ColorTable& table) {
 }
 
 Result<> write_text(const fs::path& path, const std::string& text) {
-    return darkroom::write_file(path, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(path, std::as_bytes(std::span(text)));
 }
 
 /// The tables and pictures that the look names.

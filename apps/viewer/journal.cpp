@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 
 namespace app {
 
@@ -51,7 +52,7 @@ std::filesystem::path Journal::file_of(const darkroom::edit::LookDocument& docum
 std::optional<std::string> Journal::left_behind(const darkroom::edit::LookDocument& document) {
     const std::filesystem::path file = file_of(document);
     std::error_code error;
-    if (file.empty() || !std::filesystem::is_regular_file(file, error)) return std::nullopt;
+    if (file.empty() || !std::filesystem::exists(file, error) || !darkroom::check_own_file(file)) return std::nullopt;
     const Result<std::string> text = text_of(file);
     if (!text || !text->starts_with(first_line)) return std::nullopt;
     // Two windows over one look: the journal is the other one's.
@@ -78,7 +79,7 @@ Result<> Journal::follow(const darkroom::edit::LookDocument& document) {
     std::error_code error;
     if (document.file().empty()) std::filesystem::create_directories(folder_, error);
     const std::string all = fmt::format("{}{}\n{}", first_line, getpid(), *text);
-    if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(all))); !done) {
+    if (Result<> done = darkroom::write_own_file(file, std::as_bytes(std::span(all))); !done) {
         has_failed_ = true;
         return done;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/files.hpp"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <csignal>
 #include <thread>
 
+#include "core/own_file.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -116,6 +118,31 @@ TEST_F(ImageFiles, ASignalLeavesNoTemporaryFile) {
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             EXPECT_TRUE(entry.path().filename().string().starts_with("a")) << entry.path();
     }
+}
+
+// What a stranger put under the name of a journal or an entry of a cache.
+TEST_F(ImageFiles, FilesOfOurOwnFollowNoLinkAndWaitForNoPipe) {
+    put(file("target"), "precious");
+    std::filesystem::create_symlink("target", file("link"));
+    std::filesystem::create_symlink("nowhere", file("dangling"));
+    ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0600), 0);
+    put(file("own"), "old");
+    const std::string text = "text";
+    const auto write = [&](const char* name) { return write_own_file(file(name), std::as_bytes(std::span(text))); };
+    for (const auto& [name, why] : {std::pair("link", "is a link, which is not followed"),
+                                    std::pair("dangling", "is a link, which is not followed"),
+                                    std::pair("pipe", "is no regular file"), std::pair(".", "is a folder")}) {
+        const Result<> done = write(name);
+        ASSERT_FALSE(done) << name;
+        EXPECT_NE(done.error().text.find(why), std::string::npos) << done.error().text;
+    }
+    EXPECT_EQ(content(file("target")), "precious");
+    EXPECT_FALSE(std::filesystem::exists(file("nowhere")));
+    EXPECT_TRUE(write("own"));
+    EXPECT_TRUE(write("new"));
+    EXPECT_EQ(content(file("own")) + content(file("new")), "texttext");
+    EXPECT_FALSE(write_file(file("pipe"), std::as_bytes(std::span(text)))) << "nobody reads, and nobody waits";
+    EXPECT_EQ(file_count(), 6U) << "nothing is left beside them";
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
 
@@ -148,7 +149,7 @@ auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Jso
 // Text that is no UTF-8, as names of files may be, is written with a sign in its place.
 Result<> write(const fs::path& path, const Json& json) {
     const std::string text = json.dump(1) + "\n";
-    return darkroom::write_file(path, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(path, std::as_bytes(std::span(text)));
 }
 
 Result<std::vector<fs::path>> record_files(const fs::path& folder) {

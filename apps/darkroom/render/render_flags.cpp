@@ -10,6 +10,7 @@
 
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
 
@@ -131,11 +132,14 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
     const FileSet inputs(std::array<fs::path, 1>{scene});
     std::set<fs::path> outputs;
     for (const Shot& shot : shots)
-        for (const fs::path& path : {shot.picture, shot.frame}) {
+        for (const fs::path* const place : {&shot.picture, &shot.frame}) {
+            const fs::path& path = *place;
             if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
                 return user_error(fmt::format("{}: -o and --save-frame name the same file", printable(path.string())));
             if (Result<> done = check_output(path, inputs, run.missing_folders()); !done) return done;
+            if (place == &shot.frame)
+                if (Result<> done = darkroom::check_own_file(path); !done) return done;
         }
     return {};
 }

@@ -24,6 +24,8 @@ struct FileFacts {
 
 /// Whether this process may write to what is there under the path.
 [[nodiscard]] std::error_code check_writable(const std::filesystem::path& path);
+/// On Windows, where folders say who may write, always.
+[[nodiscard]] bool is_of_this_user(const std::filesystem::path& path);
 
 /// Of this process, for names that no other one chooses at the same time.
 [[nodiscard]] std::uint64_t process_number();
@@ -33,7 +35,7 @@ class OpenFile {
   public:
     enum class How {
         Read,      ///< never waits: not for somebody who writes into a pipe
-        Write,     ///< what is there, from its start
+        Write,     ///< what is there, from its start; never waits for somebody who reads from a pipe
         Truncate,  ///< what is there, emptied
         Create,    ///< to write; refused where there is one
     };

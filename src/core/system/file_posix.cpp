@@ -34,7 +34,7 @@ int flags_of(OpenFile::How how) {
         case OpenFile::How::Read:
             return O_RDONLY | O_NONBLOCK | O_NOCTTY;
         case OpenFile::How::Write:
-            return O_WRONLY;
+            return O_WRONLY | O_NONBLOCK;
         case OpenFile::How::Truncate:
             return O_WRONLY | O_TRUNC;
         case OpenFile::How::Create:
@@ -64,7 +64,15 @@ OpenFile::~OpenFile() {
 
 std::error_code OpenFile::open(const std::filesystem::path& path, How how) {
     number_ = ::open(path.c_str(), flags_of(how) | O_CLOEXEC, 0666);
-    return number_ >= 0 ? std::error_code() : last_error();
+    if (number_ < 0) return last_error();
+    // Nobody waits for somebody who reads from a pipe; who is there may take his time.
+    if (how == How::Write) ::fcntl(number_, F_SETFL, ::fcntl(number_, F_GETFL) & ~O_NONBLOCK);
+    return {};
+}
+
+bool is_of_this_user(const std::filesystem::path& path) {
+    struct stat status {};
+    return ::lstat(path.c_str(), &status) == 0 && status.st_uid == ::geteuid();
 }
 
 std::error_code OpenFile::facts(FileFacts& facts) const {

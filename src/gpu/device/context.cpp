@@ -10,6 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
+#include "core/own_file.hpp"
 #include "core/system/folders.hpp"
 #include "gpu/device/assumed_device.hpp"
 #include "gpu/device/cleared.hpp"
@@ -336,7 +337,7 @@ void Context::save_pipeline_cache_if_grown() {
     std::memcpy(bytes.data(), &hash, sizeof hash);
     make_cache_folder(cache_folder);
     // Without the cache the next start is slower and nothing else, so a remark is enough.
-    if (const Result<> written = write_file(pipeline_cache_path_, bytes); !written) {
+    if (const Result<> written = write_own_file(pipeline_cache_path_, bytes); !written) {
         say(Severity::Info, written.error().text);
     }
     keep_others_from_writing(pipeline_cache_path_);

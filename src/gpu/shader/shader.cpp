@@ -10,6 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
+#include "core/own_file.hpp"
 #include "core/thread/parallel.hpp"
 #include "gpu/device/device_facts.hpp"
 #include "gpu/shader/glsl_compiler.hpp"
@@ -21,20 +22,33 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 
 std::filesystem::path entry_path(const std::filesystem::path& folder, const Digest& text, ShaderStage stage) {
-    const std::string key = fmt::format("{}|{}|{}", glsl_compiler_version(), static_cast<int>(stage), hex(text));
+    constexpr int format = 2;  // of entries
+    const std::string key =
+        fmt::format("{}|{}|{}|{}", format, glsl_compiler_version(), static_cast<int>(stage), hex(text));
     return folder / (hex(sha256(key)) + ".spv");
 }
 
-/// An entry is the hash of its words, then the words.
+/// Of an entry's words under its name, so that one in the place of another is none.
+Hash hash_of(const std::filesystem::path& path, std::span<const std::byte> words) {
+    const std::string name = path.stem().string();
+    std::vector<std::byte> all(name.size() + words.size());
+    std::memcpy(all.data(), name.data(), name.size());
+    std::memcpy(all.data() + name.size(), words.data(), words.size());
+    return content_hash(all);
+}
+
+constexpr std::uintmax_t most_entry_bytes = std::uintmax_t{16} << 20;
+
+/// An entry is the hash of its words under its name, then the words.
 std::optional<Words> read_entry(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return {};
-    const Result<std::vector<std::byte>> bytes = read_file(path);
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_entry_bytes});
     if (!bytes || bytes->size() <= sizeof(Hash) || bytes->size() % sizeof(std::uint32_t) != 0) return {};
     Hash expected;
     std::memcpy(&expected, bytes->data(), sizeof expected);
     const std::span<const std::byte> content = std::span(*bytes).subspan(sizeof expected);
-    if (content_hash(content) != expected) return {};
+    if (hash_of(path, content) != expected) return {};
     Words words(content.size() / sizeof(std::uint32_t));
     std::memcpy(words.data(), content.data(), content.size());
     // Its time is when it was last used, by which the cache is thinned out.
@@ -46,11 +60,11 @@ std::optional<Words> read_entry(const std::filesystem::path& path) {
 std::uintmax_t write_entry(const std::filesystem::path& path, const Words& words) {
     make_cache_folder(path.parent_path());
     const std::span<const std::byte> content = std::as_bytes(std::span(words));
-    const Hash hash = content_hash(content);
+    const Hash hash = hash_of(path, content);
     std::vector<std::byte> bytes(sizeof hash + content.size());
     std::memcpy(bytes.data(), &hash, sizeof hash);
     std::memcpy(bytes.data() + sizeof hash, content.data(), content.size());
-    return write_file(path, bytes) ? bytes.size() : 0;
+    return write_own_file(path, bytes) ? bytes.size() : 0;
 }
 
 struct CachedFile {

@@ -2,6 +2,7 @@
 #include "gpu/shader/shader.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <chrono>
 
@@ -65,6 +66,33 @@ TEST(GpuShaderCompiler, ClampsTakeTheOperandThatIsANumber) {
     ASSERT_TRUE(words) << words.error().text;
     for (const std::uint32_t function : {f_min, f_max, f_clamp}) EXPECT_EQ(calls_of(*words, function), 0) << function;
     for (const std::uint32_t function : {n_min, n_max, n_clamp}) EXPECT_EQ(calls_of(*words, function), 1) << function;
+}
+
+TEST_F(GpuShaderCache, AnEntryInThePlaceOfAnotherIsNone) {
+    const ShaderSource other = source("layout(local_size_x = 2) in;\nvoid main() {}\n");
+    std::vector<std::filesystem::path> entries;
+    std::vector<Words> right;
+    {
+        ShaderCompiler compiler{folder};
+        for (const ShaderSource& one : {empty, other}) right.push_back(compiler.compile(one).value());
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) entries.push_back(entry.path());
+    ASSERT_EQ(entries.size(), 2U);
+    std::filesystem::rename(entries[0], folder / "kept");
+    std::filesystem::rename(entries[1], entries[0]);
+    std::filesystem::rename(folder / "kept", entries[1]);
+    ShaderCompiler compiler{folder};
+    EXPECT_EQ(compiler.compile(empty).value(), right[0]);
+    EXPECT_EQ(compiler.compile(other).value(), right[1]);
+    EXPECT_EQ(compiler.from_cache, 0U);
+    // What is no regular file is passed over, and nobody waits for it.
+    std::filesystem::remove(entries[0]);
+    ASSERT_EQ(::mkfifo(entries[0].c_str(), 0600), 0);
+    std::filesystem::resize_file(entries[1], std::uintmax_t{1} << 33);
+    ShaderCompiler again{folder};
+    EXPECT_EQ(again.compile(empty).value(), right[0]);
+    EXPECT_EQ(again.compile(other).value(), right[1]);
+    EXPECT_EQ(again.from_cache, 0U);
 }
 
 TEST_F(GpuShaderCache, GivesTheSameWordsWithoutTheCompiler) {
