@@ -3,19 +3,24 @@
 #include "confined/inside/confine.hpp"
 
 #include <fcntl.h>
+#include <seccomp.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <optional>
 #include <thread>
 
 #include "confined/inside/serve.hpp"
+#include "image/picture/write.hpp"
 #include "image/test_files.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom::test {
 namespace {
@@ -86,6 +91,37 @@ TEST_F(Confined, WithoutFoldersItOpensNothing) {
         const rlimit more{RLIM_INFINITY, RLIM_INFINITY};
         return ::setrlimit(RLIMIT_AS, &more) == 0;
     }));
+}
+
+// The kernel refuses what confines a decoder; a picture of a stranger's is not decoded then.
+TEST_F(Confined, AProgramWhoseDecodersCannotBeConfinedSaysSo) {
+    ASSERT_TRUE(write_picture(file("in.png"), Picture(4, 4)));
+    const auto develop = [&](const char* flag) {
+        const std::string program = std::string(binary_folder) + "/bin/darkroom", in = file("in.png"),
+                          out = file("out.exr"), said = file("said");
+        const pid_t child = ::fork();
+        if (child == 0) {
+            scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+            seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(seccomp), 0);
+            seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), SCMP_SYS(prctl), 1,
+                             scmp_arg_cmp{0, SCMP_CMP_EQ, PR_SET_SECCOMP, 0});
+            if (seccomp_load(filter) != 0) ::_exit(99);
+            ::dup2(::open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDERR_FILENO);
+            ::execl(program.c_str(), "darkroom", "develop", in.c_str(), "-q", "-o", out.c_str(), flag, nullptr);
+            ::_exit(98);
+        }
+        int status = 0;
+        EXPECT_EQ(::waitpid(child, &status, 0), child);
+        return std::pair(WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(file("said")));
+    };
+    const auto [code, said] = develop(nullptr);
+    if (code == 99) GTEST_SKIP() << "this kernel has no seccomp";
+    EXPECT_EQ(code, 2) << said;
+    EXPECT_NE(said.find("cannot be confined"), std::string::npos) << said;
+    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+    EXPECT_FALSE(std::filesystem::exists(file("out.exr")));
+    EXPECT_EQ(develop("--allow-unconfined").first, 0) << content(file("said"));
+    EXPECT_TRUE(std::filesystem::exists(file("out.exr")));
 }
 
 TEST(ConfinedProgram, AProcessAtWorkEndsWithIt) {

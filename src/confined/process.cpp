@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <vector>
@@ -32,6 +33,8 @@ Descriptor lifted(int descriptor) {
     return Descriptor(fcntl(descriptor, F_DUPFD_CLOEXEC, 10));
 }
 
+std::atomic<bool> may_be_unconfined{false};
+
 std::string end_of(int status) {
     if (WIFSIGNALED(status))
         return fmt::format("was ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
@@ -43,6 +46,8 @@ std::string end_of(int status) {
 Failure ConfinedProcess::failed(const std::string& why) const {
     return machine_error(fmt::format("{}: {}", program_module(program_.c_str()).string(), why));
 }
+
+void ConfinedProcess::allow_unconfined(bool is_allowed) { may_be_unconfined = is_allowed; }
 
 bool ConfinedProcess::is_running() const {
     siginfo_t ended{};
@@ -63,6 +68,7 @@ Result<> ConfinedProcess::start(std::span<const std::string> arguments) {
     }
     std::vector<std::string> all{program_};
     all.insert(all.end(), arguments.begin(), arguments.end());
+    if (may_be_unconfined) all.emplace_back(allow_unconfined_flag);
     const int reason = Spawn()
                            .give(other.number(), STDIN_FILENO)
                            .open(STDOUT_FILENO, "/dev/null", O_WRONLY)

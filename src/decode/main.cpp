@@ -10,6 +10,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -151,8 +152,10 @@ class Server {
 
 int main(int count, char** arguments) {
     using namespace darkroom;
-    const std::string error = count > 1 ? load(arguments[1]) : std::string();
-    confine({});
+    const std::span<const char* const> given(arguments + 1, static_cast<std::size_t>(count - 1));
+    const bool has_module = !given.empty() && given[0] != allow_unconfined_flag;
+    std::string error = has_module ? load(given[0]) : std::string();
+    if (const std::string why = why_not_confined(confine({}), given); !why.empty()) error = why;
     if (greet(error) && error.empty()) {
         Server server;
         while (server.serve_one()) {

@@ -103,8 +103,9 @@ void serve() {
 }  // namespace
 }  // namespace darkroom
 
-int main() {
-    darkroom::confine(darkroom::folders_of_fonts());
-    if (darkroom::greet()) darkroom::serve();
+int main(int count, char** arguments) {
+    const std::string error = darkroom::why_not_confined(darkroom::confine(darkroom::folders_of_fonts()),
+                                                         {arguments + 1, static_cast<std::size_t>(count - 1)});
+    if (darkroom::greet(error) && error.empty()) darkroom::serve();
     _exit(0);  // libraries have nothing to write at the end, and could not
 }

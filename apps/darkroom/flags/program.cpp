@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "apps/darkroom/run/report.hpp"
+#include "confined/process.hpp"
 #include "core/text/param_text.hpp"
 
 namespace app {
@@ -149,6 +150,9 @@ void add_voice(CommandFlags command) {
     command.parser().add_flag_callback(
         "-v,--verbose", [] { set_voice(Voice::Verbose); },
         "Says more: the device, and all that is left out with the reason");
+    command.parser().add_flag_callback(
+        "--allow-unconfined", [] { darkroom::ConfinedProcess::allow_unconfined(true); },
+        "Decodes files even where the kernel cannot confine their decoders");
 }
 
 bool is_asked(CommandFlags command) { return command.parser().parsed(); }

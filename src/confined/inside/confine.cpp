@@ -14,6 +14,9 @@
 #include <cerrno>
 #include <cstdint>
 #include <memory>
+#include <string_view>
+
+#include "confined/messages.hpp"
 
 namespace darkroom {
 namespace {
@@ -100,6 +103,14 @@ Confinement confine(const std::vector<std::string>& readable_folders) {
     out.has_landlock = confine_files(readable_folders);
     out.has_seccomp = confine_calls(!readable_folders.empty());
     return out;
+}
+
+std::string why_not_confined(const Confinement& done, std::span<const char* const> arguments) {
+    for (const std::string_view argument : arguments)
+        if (argument == allow_unconfined_flag) return {};
+    return done.has_seccomp ? std::string()
+                            : "cannot be confined: this kernel holds no calls back (seccomp), and only "
+                              "--allow-unconfined lets it read files of strangers";
 }
 
 }  // namespace darkroom
