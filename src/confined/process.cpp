@@ -66,6 +66,7 @@ Result<> ConfinedProcess::start(std::span<const std::string> arguments) {
         socket_ = lifted(ends[0]);
         if (is_cancelled_) shutdown(socket_.number(), SHUT_RDWR);
     }
+    if (!socket_.is_open() || !other.is_open()) return failed(std::strerror(EMFILE));
     std::vector<std::string> all{program_};
     all.insert(all.end(), arguments.begin(), arguments.end());
     if (may_be_unconfined) all.emplace_back(allow_unconfined_flag);

@@ -155,12 +155,16 @@ Assets load_assets(const Scene& scene) {
         sources.push_back({.name = file.filename().string(), .file = file});
     std::vector<Result<Image>> images = decode_images(sources);
 
+    const auto note = [&](const Error& error, const std::string& text) {
+        if (error.fault == Fault::Machine && !assets.machine_error) assets.machine_error = Error{error.fault, text};
+        assets.warnings.push_back(text);
+    };
     if (sky && *sky) {
         assets.skybox = std::move((*sky)->color);
         for (const std::string& warning : (*sky)->warnings)
             assets.warnings.push_back(fmt::format("{}: {}", wanted.skybox.string(), warning));
     } else if (sky) {
-        assets.warnings.push_back(fmt::format("{} (asked for by the environment)", sky->error().text));
+        note(sky->error(), fmt::format("{} (asked for by the environment)", sky->error().text));
     }
     for (std::size_t i = 0; i < models.size(); ++i) {
         if (models[i]) {
@@ -169,8 +173,8 @@ Assets load_assets(const Scene& scene) {
                 assets.warnings.push_back(fmt::format("{}: {}", model_files[i].string(), warning));
             continue;
         }
-        assets.warnings.push_back(
-            fmt::format("{} (asked for by {})", models[i].error().text, wanted.models.asked_for_by(i)));
+        note(models[i].error(),
+             fmt::format("{} (asked for by {})", models[i].error().text, wanted.models.asked_for_by(i)));
         assets.model_errors.push_back(models[i].error());
         assets.models.emplace_back();
         forget(assets.entities, &EntityAssets::model, i);
@@ -180,8 +184,8 @@ Assets load_assets(const Scene& scene) {
             assets.images.push_back(std::move(*images[i]));
             continue;
         }
-        assets.warnings.push_back(fmt::format("{}: {} (asked for by {})", wanted.images.files()[i].string(),
-                                              images[i].error().text, wanted.images.asked_for_by(i)));
+        note(images[i].error(), fmt::format("{}: {} (asked for by {})", wanted.images.files()[i].string(),
+                                            images[i].error().text, wanted.images.asked_for_by(i)));
         assets.images.push_back({.name = sources[i].name});
         for (const auto member :
              {&EntityAssets::material_texture, &EntityAssets::sprite_texture, &EntityAssets::particle_texture})

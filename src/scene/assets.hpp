@@ -30,6 +30,9 @@ struct Assets {
     std::vector<std::filesystem::path> files;  ///< that were found, models and pictures
     std::vector<std::string> warnings;         ///< one line each, naming the file and who asked for it
     std::vector<Error> model_errors;           ///< of the models that could not be had, which are in `warnings`, too
+    /// The first failure of this machine (no memory, no file handle): what is here is not what the scene asks for, and
+    /// check_snapshot refuses it.
+    std::optional<Error> machine_error;
 };
 
 /// Never fails: what cannot be had is in `warnings`. Files are decoded on several threads.

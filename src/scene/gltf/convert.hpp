@@ -19,7 +19,8 @@ namespace darkroom::scene::gltf {
                                                      const std::vector<bool>& is_broken);
 
 /// Decodes on several threads; broken ones are warnings and stay empty.
-[[nodiscard]] std::vector<Image> convert_images(Document& document);
+/// What cannot be decoded is white, with a warning; an error is the machine's.
+[[nodiscard]] Result<std::vector<Image>> convert_images(Document& document);
 
 /// The nodes of the default scene, parents first, and where each node of the file went (no_index: not in the scene).
 struct NodeOrder {

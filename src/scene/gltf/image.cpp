@@ -6,7 +6,7 @@
 
 namespace darkroom::scene::gltf {
 
-std::vector<Image> convert_images(Document& document) {
+Result<std::vector<Image>> convert_images(Document& document) {
     const std::vector<ImageSource>& sources = document.images();
     std::vector<EncodedImage> encoded;
     for (const ImageSource& source : sources)
@@ -18,6 +18,9 @@ std::vector<Image> convert_images(Document& document) {
             images.push_back(std::move(*decoded[i]));
             continue;
         }
+        // What this machine cannot open now, another or a later run can.
+        if (sources[i].fault.empty() && decoded[i].error().fault == Fault::Machine)
+            return machine_error(fmt::format("{}: {}", sources[i].shown, decoded[i].error().text));
         images.push_back({.name = sources[i].name});
         const std::string fault = sources[i].fault.empty()
                                       ? fmt::format("{}: {}", sources[i].shown, decoded[i].error().text)

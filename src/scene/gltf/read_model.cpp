@@ -106,7 +106,9 @@ Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model)
             if (primitive.material != no_index) is_material_needed[primitive.material] = true;
             for (const VariantMaterial& variant : primitive.variants) is_material_needed[variant.material] = true;
         }
-    model.images = convert_images(document);
+    Result<std::vector<Image>> images = convert_images(document);
+    if (!images) return failure(std::move(images));
+    model.images = std::move(*images);
     std::vector<bool> is_broken;
     for (const Image& image : model.images) is_broken.push_back(image.is_empty());
     if (auto done = convert_all(

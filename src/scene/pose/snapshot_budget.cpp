@@ -177,6 +177,8 @@ class Check {
 
 }  // namespace
 
-Result<> check_snapshot(const Scene& scene, const Assets& assets) { return Check(scene, assets).run(); }
+Result<> check_snapshot(const Scene& scene, const Assets& assets) {
+    return assets.machine_error ? failure(*assets.machine_error) : Check(scene, assets).run();
+}
 
 }  // namespace darkroom::scene
