@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/help/help.hpp"
@@ -37,6 +38,12 @@ int run(int argc, char** argv, const AddCommands& add_commands) {
 int run_program(int argc, char** argv, const AddCommands& add_commands) {
     darkroom::AtomicPath::remove_on_signals();
     survive_size_limits();
+    // Whoever reads objects reads of a wrong flag, too.
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        const bool is_json = word == "--progress" && i + 1 < argc && std::string_view(argv[i + 1]) == "json";
+        if (is_json || word == "--progress=json") report_as_json();
+    }
     // Exceptions come from third parties and from the allocator alone.
     try {
         return end_output(run(argc, argv, add_commands));
