@@ -287,8 +287,11 @@ const Imf::Header& ExrSource::header(std::size_t part) const { return state_->pa
 
 std::vector<double> ExrSource::numbers(std::size_t part, std::string_view attribute) const {
     const Imf::Header& from = header(part);
+    // Whoever lists them asks for each, by its name.
+    if (const auto found = from.find(std::string(attribute)); found != from.end()) return numbers_of(found.attribute());
+    const std::string wanted = lower(attribute);
     for (auto found = from.begin(); found != from.end(); ++found)
-        if (lower(found.name()) == lower(attribute)) return numbers_of(found.attribute());
+        if (lower(found.name()) == wanted) return numbers_of(found.attribute());
     return {};
 }
 

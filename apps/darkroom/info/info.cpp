@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <span>
 #include <system_error>
 
 #include "apps/darkroom/commands.hpp"
@@ -13,6 +14,7 @@
 #include "core/files.hpp"
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
+#include "image/picture/picture_source.hpp"
 #include "info_documents.hpp"
 
 namespace app {
@@ -36,9 +38,6 @@ struct Head {
     std::string start;
     std::string extension;
 
-    [[nodiscard]] bool starts_with_any(std::initializer_list<std::string_view> marks) const {
-        return std::ranges::any_of(marks, [&](std::string_view mark) { return start.starts_with(mark); });
-    }
     /// The first line that is neither empty nor a comment of TOML; of a file with bytes of zero: nothing.
     [[nodiscard]] std::string_view first_line() const {
         if (start.find('\0') != std::string::npos) return {};
@@ -51,12 +50,7 @@ struct Head {
     }
 };
 
-using namespace std::string_view_literals;
-
-bool is_picture(const Head& head) {
-    return head.starts_with_any(
-        {"\x76\x2f\x31\x01"sv, "\x89PNG"sv, "\xff\xd8\xff"sv, "#?"sv, "II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv});
-}
+bool is_picture(const Head& head) { return darkroom::kind_of_file(std::as_bytes(std::span(head.start))).has_value(); }
 
 bool is_model(const Head& head) { return head.start.starts_with("glTF") || head.first_line().starts_with('{'); }
 

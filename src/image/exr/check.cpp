@@ -160,7 +160,8 @@ Result<> check_exr(std::span<const std::byte> file) {
     if (reader.is_past_end()) return cut_off();
     if ((version & 0xff) != 2) return user_error(fmt::format("OpenEXR version {}, 2 is read here", version & 0xff));
     const bool is_multi_part = (version & multi_part_flag) != 0;
-    if ((version & deep_flag) != 0) return user_error("has deep pixels, which are not read here; flatten it first");
+    if ((version & deep_flag) != 0 && !is_multi_part)
+        return user_error("has deep pixels, which are not read here; flatten it first");
 
     std::vector<CheckedPart> parts;
     AttributeCount attributes;
@@ -184,7 +185,9 @@ Result<> check_exr(std::span<const std::byte> file) {
     for (CheckedPart& part : parts) {
         is_tiled.push_back(is_multi_part ? part.type.starts_with("tiledimage") : (version & tiled_flag) != 0);
         if (part.type.starts_with("deep"))
-            return user_error("has deep pixels, which are not read here; flatten it first");
+            return user_error(
+                fmt::format("part {} of {}, \"{}\", has deep pixels, which are not read here; flatten it first",
+                            &part - parts.data() + 1, parts.size(), one_printable_line(part.name)));
         if (is_multi_part && part.type != "tiledimage" && part.type != "scanlineimage")
             return malformed("a part of a kind that is neither scanlineimage nor tiledimage");
         if (!part.type.empty() && part.type.starts_with("tiledimage") != is_tiled.back())

@@ -93,6 +93,8 @@ Result<> read_attribute(std::string_view name, std::string_view type, std::span<
     if (name == "dataWindow") part.data = read_window(reader);
     if (name == "displayWindow") part.display = read_window(reader);
     if (name == "compression") part.compression = reader.number<std::uint8_t>();
+    if (name == "name")
+        part.name.assign(reinterpret_cast<const char*>(value.data()), std::min<std::size_t>(value.size(), 256));
     if (name == "type")
         part.type.assign(reinterpret_cast<const char*>(value.data()), std::min<std::size_t>(value.size(), 32));
     if (name == "tiles") {

@@ -82,7 +82,7 @@ struct CheckedPart {
     std::optional<Window> display;
     std::optional<Tiles> tiles;
     std::optional<unsigned> compression;
-    std::string type;
+    std::string type, name;
     double bytes_per_pixel = 0;  // subsampled channels have fewer than one sample a pixel
     Wide bytes = 0;              // of all pixels, at full resolution
     Wide channel_count = 0;

@@ -43,11 +43,11 @@ double smallest_size(FileKind kind, const FilePart& part) {
     switch (kind) {
         case FileKind::OpenExr:
         case FileKind::Png:
-        case FileKind::WebP:
-            return 0;  // check_exr, check_png and check_webp have seen to it
+            return 0;  // check_exr and check_png have seen to it
         case FileKind::Jpeg:
             return width * height / 64 / 8;
         case FileKind::Tiff:
+        case FileKind::WebP:  // whose runs of one colour may cost next to nothing
             return width * height / 8 / 4096;
         case FileKind::Radiance:
             return height *
