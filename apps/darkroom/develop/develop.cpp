@@ -297,7 +297,9 @@ class Develop {
 
     Result<> decode(std::size_t i) {
         const Step& step = job_.steps[i];
-        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, job_.frame);
+        darkroom::FrameOptions options = job_.frame;
+        options.camera_file = darkroom::numbered(options.camera_file, step.number);
+        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, options);
         if (!frame) return failure(std::move(frame));
         if (Result<> done = make_composer(); !done) return done;
         const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame->color.width, frame->color.height})

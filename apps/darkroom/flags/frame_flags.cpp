@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "core/text/param_text.hpp"
 #include "image/color/configuration.hpp"
+#include "image/frame/sequence.hpp"
 
 namespace app {
 
@@ -11,7 +13,9 @@ using darkroom::Result;
 
 void FrameFlags::add_to(CommandFlags command) {
     const std::string group = "The frame";
-    command.add_option("--map", maps_, "Name of a layer in the file: depth=NAME, normals=, velocity=, color=")
+    command
+        .add_option("--map", maps_,
+                    "Name of a layer in the file: depth=NAME, normals=, velocity=, color=; none: read without it")
         .type_name("LAYER=NAME")
         .repeated()
         .group(group);
@@ -23,7 +27,17 @@ void FrameFlags::add_to(CommandFlags command) {
     depth_scale_.add_to(command, "Metres for each unit of the depth").type_name("N").group(group);
     command.add_flag("--depth-inverse", is_depth_inverse_, "The depth is 1 / distance, as Nuke's is").group(group);
     fov_.add_to(command, "Vertical field of view, where the file has no projection").type_name("DEGREES").group(group);
-    command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(group);
+    command.add_option("--camera", camera_, "A camera file (TOML); camera.####.toml of several frames: one for each")
+        .type_name("FILE")
+        .group(group);
+    command
+        .add_option("--normals-space", normals_space_,
+                    "What the normals are told in; without it they are held against the depth")
+        .type_name("world|view")
+        .group(group);
+    command.add_option("--up", up_, "Axis of the file's world that points up, whatever the camera file says")
+        .type_name("y|z")
+        .group(group);
     command
         .add_option("--input-space", input_space_,
                     fmt::format("Colour space of the file's numbers, whatever the file says: {}, or a space of --ocio",
@@ -42,9 +56,20 @@ Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configurat
     if (Result<> done = fov_.read_to(out.vertical_field_of_view); !done) return failure(std::move(done));
     for (const std::string& map : maps_)
         if (Result<> added = darkroom::add_mapping(out.names, map); !added) return failure(std::move(added));
+    if (!normals_space_.empty()) {
+        if (normals_space_ != "world" && normals_space_ != "view")
+            return darkroom::user_error(
+                fmt::format("--normals-space {}: allowed is world, view", darkroom::printable(normals_space_)));
+        out.normals_space = normals_space_ == "view" ? darkroom::NormalsSpace::View : darkroom::NormalsSpace::World;
+    }
+    if (!up_.empty()) {
+        if (up_ != "y" && up_ != "z")
+            return darkroom::user_error(fmt::format("--up {}: allowed is y, z", darkroom::printable(up_)));
+        out.up = up_ == "z" ? darkroom::UpAxis::Z : darkroom::UpAxis::Y;
+    }
     out.camera_file = camera_;
     // What is wrong with it is told once, and before any work.
-    if (!camera_.empty())
+    if (!camera_.empty() && !darkroom::has_number_pattern(camera_))
         if (const auto camera = darkroom::read_camera(camera_); !camera) return failure(camera.error());
     if (!input_space_.empty() && !configuration.empty()) {
         Result<std::shared_ptr<const darkroom::ColorChain>> chain =

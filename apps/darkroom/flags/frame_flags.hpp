@@ -13,7 +13,7 @@
 
 namespace app {
 
-/// --map, --eye, --overscan, --depth-scale, --depth-inverse, --fov, --camera, --input-space.
+/// --map, --eye, --overscan, --depth-scale, --depth-inverse, --fov, --camera, --normals-space, --up, --input-space.
 class FrameFlags {
   public:
     void add_to(CommandFlags command);
@@ -29,7 +29,7 @@ class FrameFlags {
 
   private:
     std::vector<std::string> maps_;
-    std::string camera_, input_space_, eye_;
+    std::string camera_, normals_space_, up_, input_space_, eye_;
     bool is_depth_inverse_ = false;
     NumberFlag depth_scale_{"--depth-scale", {.least = 0, .most = 1e9, .is_open = true}};
     NumberFlag fov_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};

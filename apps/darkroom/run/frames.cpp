@@ -112,7 +112,7 @@ void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view sho
         warn(
             fmt::format("{}: has depth and no projection: a vertical field of view of {} degrees is assumed; --fov or "
                         "--camera sets another",
-                        shown, assumed_field_of_view));
+                        shown, darkroom::assumed_field_of_view));
 }
 
 DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const ReferenceLight> lights) {
@@ -131,7 +131,7 @@ DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const Ref
     if (frame.exposure) input.exposure = {&*frame.exposure, 1};
     darkroom::FrameCamera camera = frame.camera;
     if (!camera.projection)
-        camera.projection = darkroom::perspective(assumed_field_of_view, static_cast<double>(width) / height);
+        camera.projection = darkroom::perspective(darkroom::assumed_field_of_view, static_cast<double>(width) / height);
     input.camera = camera_of(camera);
     if (frame.time) input.time = *frame.time;
     if (frame.delta_time) input.delta_time = *frame.delta_time;

@@ -13,8 +13,6 @@
 
 namespace app {
 
-/// Of frames that do not say theirs: vertical, degrees.
-inline constexpr double assumed_field_of_view = 45;
 /// The frame's lights, with the depths of their cascades moved out of it. Where those stayed in the file, a light casts
 /// no shadow.
 [[nodiscard]] std::vector<darkroom::ReferenceLight> take_lights(darkroom::FrameFile& frame);

@@ -272,6 +272,7 @@ float scale_of_depth(std::string_view name) { return is_of_unreal(name) ? 0.01F 
 
 Result<> Finder::find_depth(FrameChannels& found) const {
     if (const std::string* name = mapped("depth")) {
+        if (*name == no_layer) return {};
         constexpr std::array<std::string_view, 2> components{"z", "v"};
         found.depth = lone_channel(*name);
         if (found.depth) return {};
@@ -313,6 +314,7 @@ Result<> Finder::find_depth(FrameChannels& found) const {
 
 Result<> Finder::find_normals(FrameChannels& found) const {
     if (const std::string* name = mapped("normals")) {
+        if (*name == no_layer) return {};
         constexpr std::array<std::string_view, 2> components{"xyz", "rgb"};
         auto set = mapped_set("normals", *name, components);
         if (!set) return failure(std::move(set));
@@ -331,6 +333,7 @@ Result<> Finder::find_normals(FrameChannels& found) const {
 Result<> Finder::find_velocity(FrameChannels& found) const {
     const auto is_blender = [](const Layer& l) { return last_component(l.name) == "vector" && l.has("xyzw"); };
     if (const std::string* name = mapped("velocity")) {
+        if (*name == no_layer) return {};
         constexpr std::array<std::string_view, 3> components{"xy", "uv", "rg"};
         auto set = mapped_set("velocity", *name, components);
         if (!set) return failure(std::move(set));

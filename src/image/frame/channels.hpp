@@ -42,8 +42,9 @@ struct FrameChannels {
 };
 
 /// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the
-/// dot.
+/// dot. no_layer: the frame is read without it.
 using LayerNames = std::map<std::string, std::string, std::less<>>;
+inline constexpr std::string_view no_layer = "none";
 
 /// Does the part hold the cascades of a light? It is shadow0, shadow1 and so on, with channels cascade0, cascade1 and
 /// so on alone, and is no layer of the frame.

@@ -41,7 +41,16 @@ struct FrameCamera {
     /// How far `projection` moves the picture, in pixels, y down; and the previous one. Unknown: 0.
     std::optional<std::array<float, 2>> jitter, previous_jitter;
     std::optional<float> near_distance, far_distance;  ///< far may be infinite
+    /// Of the world that a camera file's matrix is told in. Of a frame that was read, y is up.
+    bool is_z_up = false;
 };
+
+/// What stands in for a field of view that nobody told: vertical, degrees.
+inline constexpr double assumed_field_of_view = 45;
+
+/// What a file's normals are told in. Of the camera: x right, y up, z toward the viewer.
+enum class NormalsSpace : std::uint8_t { World, View };
+enum class UpAxis : std::uint8_t { Y, Z };
 
 /// A square depth map that a light sees its shadows by, row-major, top row first.
 struct FrameCascade {
@@ -74,6 +83,8 @@ struct FrameOptions {
     std::optional<double> vertical_field_of_view;  ///< degrees; goes before the file's projection
     std::optional<double> depth_scale;             ///< metres for each unit of the file; goes before the known names
     bool is_depth_inverse = false;                 ///< the file has 1 / distance, and 0 where nothing is
+    std::optional<NormalsSpace> normals_space;     ///< else it is measured, as far as there is depth
+    std::optional<UpAxis> up;                      ///< of the file's world; goes before what a camera file says
     /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
     /// place and the distances are not known either.
     std::filesystem::path camera_file;
@@ -145,7 +156,8 @@ void widen(FrameFile& frame);
                                    std::size_t max_threads = 0);
 
 /// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for
-/// column vectors), `projection` (16 numbers) or `fov` (vertical, degrees). All are optional; other keys are refused.
+/// column vectors), `projection` (16 numbers) or `fov` (vertical, degrees), and `up`, the world's axis that points up:
+/// "y" or "z". All are optional; other keys are refused.
 [[nodiscard]] Result<FrameCamera> read_camera(const std::filesystem::path& path);
 
 /// The same projection for a picture of this size, in which what it saw is the window.

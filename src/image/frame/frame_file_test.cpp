@@ -305,7 +305,8 @@ TEST_F(ImageFrameData, TristimulusFileEqualsItsRec709Twin) {
 }
 
 TEST_F(ImageFrameData, BlenderLayersAreRecognised) {
-    const auto frame = read_frame(data_ / "exr/render_interior/interior.0022.exr");
+    const auto frame =
+        read_frame(data_ / "exr/render_interior/interior.0022.exr", {.normals_space = NormalsSpace::View});
     ASSERT_TRUE(frame) << frame.error().text;
     ASSERT_TRUE(frame->depth && frame->normals && frame->velocity);
     EXPECT_EQ(frame->color.width, 384u);

@@ -7,10 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "image/camera/camera_check.hpp"
+#include "image/camera/world_space.hpp"
 #include "image/color/configuration.hpp"
 #include "image/color/convert_picture.hpp"
 #include "image/exr/check.hpp"
-#include "image/frame/camera_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
@@ -262,7 +263,7 @@ void FrameReader::finish_depth() {
 Result<> FrameReader::make_normals() {
     if (!found_.normals || !options_.has_normals) return {};
     if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
-    if (is_vray_ && !options_.names.contains("normals")) {
+    if (is_vray_ && !options_.names.contains("normals") && !options_.normals_space) {
         vray_normals_ = world_to_camera();
         if (!vray_normals_ || !check_camera_matrix("", *vray_normals_)) {
             frame_.warnings.emplace_back(
@@ -389,7 +390,8 @@ Result<> FrameReader::read_camera_of_file() {
     const auto forget = [&] {
         camera = {.world_to_camera = camera.world_to_camera,
                   .projection = camera.projection,
-                  .vertical_field_of_view = camera.vertical_field_of_view};
+                  .vertical_field_of_view = camera.vertical_field_of_view,
+                  .is_z_up = camera.is_z_up};
     };
     if (is_vray_) {
         if (camera.world_to_camera)
@@ -406,6 +408,7 @@ Result<> FrameReader::read_camera_of_file() {
         if (!given) return failure(std::move(given));
         forget();
         if (given->world_to_camera) camera.world_to_camera = given->world_to_camera;
+        camera.is_z_up = given->is_z_up;
         if (given->projection || given->vertical_field_of_view) {
             camera.projection = given->projection;
             camera.vertical_field_of_view = given->vertical_field_of_view;
@@ -466,6 +469,7 @@ Result<FrameFile> FrameReader::read() {
     finish_velocity();
     finish_masks();
     if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
+    settle_world(frame_, options_, vray_normals_.has_value());
     read_time_of_file();
     if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
     const std::vector<float> aspect = decoder_.numbers(found_.color.part, "PixelAspectRatio");

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/files.hpp"
-#include "image/frame/camera_check.hpp"
+#include "image/camera/camera_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "toml/toml_text.hpp"
 
@@ -44,10 +44,17 @@ std::optional<Matrix> rigid_inverse(const Matrix& m) {
 }
 
 Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& camera) {
+    if (key == "up") {
+        const std::optional<std::string> axis = node.value<std::string>();
+        if (axis != "y" && axis != "z") return user_error("up: \"y\" or \"z\" is needed");
+        camera.is_z_up = axis == "z";
+        return {};
+    }
     const bool is_matrix = key == "world_to_camera" || key == "camera_to_world" || key == "projection";
     if (!is_matrix && key != "fov")
-        return user_error(fmt::format("unknown key {}; world_to_camera, camera_to_world, projection and fov are known",
-                                      one_printable_line(key)));
+        return user_error(
+            fmt::format("unknown key {}; world_to_camera, camera_to_world, projection, fov and up are known",
+                        one_printable_line(key)));
     if (key == "fov") {
         camera.vertical_field_of_view = number(node);
         if (!camera.vertical_field_of_view ||

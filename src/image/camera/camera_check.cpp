@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/frame/camera_check.hpp"
+#include "image/camera/camera_check.hpp"
 
 #include <fmt/format.h>
 
