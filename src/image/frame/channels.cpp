@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame/channels.hpp"
-#include "core/text/lower.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <string_view>
 #include <unordered_map>
+
+#include "core/text/lower.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 namespace {
@@ -87,23 +88,13 @@ std::vector<Layer> layers_of(std::span<const FilePart> parts) {
             layers[place->second].components.emplace(last_component(channel), static_cast<int>(i));
         }
     }
-    return layers;
-}
-
-// Levenshtein, V. I., Binary codes capable of correcting deletions, insertions and reversals (1966), by rows.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-        }
+    for (Layer& layer : layers) {
+        if (layer.channel("red") < 0 || layer.channel("green") < 0 || layer.channel("blue") < 0) continue;
+        for (const std::string_view name : {"red", "green", "blue", "alpha"})
+            if (const int channel = layer.channel(name); channel >= 0)
+                layer.components.emplace(name.substr(0, 1), channel);
     }
-    return row[b.size()];
+    return layers;
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -117,9 +108,9 @@ std::string listed(const std::vector<std::string>& names) {
 
 class Finder {
   public:
-    Finder(std::span<const FilePart> parts, const LayerNames& names, std::string view)
+    Finder(std::span<const FilePart> parts, LayerNames names, std::string view)
         : parts_(parts),
-          names_(names),
+          names_(std::move(names)),
           view_(std::move(view)),
           part_count_(count_frame_parts(parts)),
           layers_(layers_of(parts)) {}
@@ -135,6 +126,8 @@ class Finder {
     [[nodiscard]] Result<ChannelSet> mapped_set(std::string_view what, const std::string& name,
                                                 std::span<const std::string_view> components) const;
     [[nodiscard]] std::optional<ChannelSet> lone_channel(const std::string& name) const;
+    [[nodiscard]] const Layer* layer_of(const ChannelSet& channel) const;
+    [[nodiscard]] const Layer* find_named_color(FrameChannels& found) const;
     [[nodiscard]] bool is_same_view(const Layer& layer) const;
     template <class Accept>
     [[nodiscard]] const Layer* best(const Accept& accept) const;
@@ -147,7 +140,7 @@ class Finder {
     void find_masks(FrameChannels& found) const;
 
     std::span<const FilePart> parts_;
-    const LayerNames& names_;
+    LayerNames names_;
     std::string view_;            // of the colour, once that is found
     std::size_t part_count_ = 0;  // without shadows
     std::vector<Layer> layers_;
@@ -155,14 +148,12 @@ class Finder {
 };
 
 Failure Finder::unknown(std::string_view what, const std::string& name) const {
-    std::vector<std::string> candidates = channel_names(parts_);
+    std::vector<std::string> candidates;
+    for (const std::string& channel : channel_names(parts_)) candidates.push_back(one_printable_line(channel));
     for (const Layer& layer : layers_)
-        if (!layer.name.empty()) candidates.push_back(layer.name);
-    const auto nearest = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(lower(a), lower(name)) < edit_distance(lower(b), lower(name));
-    });
-    return user_error(fmt::format("has no channels \"{}\" for {}; the nearest name is \"{}\"", one_printable_line(name),
-                                  what, nearest == candidates.end() ? "" : one_printable_line(*nearest)));
+        if (!layer.name.empty()) candidates.push_back(one_printable_line(layer.name));
+    return user_error(fmt::format("has no channels \"{}\" for {}{}", one_printable_line(name), what,
+                                  alternatives(name, candidates, "there are")));
 }
 
 std::optional<ChannelSet> Finder::lone_channel(const std::string& name) const {
@@ -175,16 +166,33 @@ std::optional<ChannelSet> Finder::lone_channel(const std::string& name) const {
     return std::nullopt;
 }
 
+const Layer* Finder::layer_of(const ChannelSet& channel) const {
+    for (const Layer& layer : layers_)
+        for (const auto& [component, index] : layer.components)
+            if (layer.part == channel.part && index == channel.channels[0]) return &layer;
+    return nullptr;
+}
+
+// By the layer's name, by one of its channels, or as `info` tells two layers of one name apart: "1.beauty" of part 1.
 Result<ChannelSet> Finder::mapped_set(std::string_view what, const std::string& name,
                                       std::span<const std::string_view> components) const {
-    bool is_known = false;
-    for (const Layer& layer : layers_) {
-        if (layer.name != name && (layer.prefix != name || name.empty())) continue;
-        is_known = true;
+    const Layer* known = nullptr;
+    const auto set_of = [&](const Layer& layer) -> std::optional<ChannelSet> {
+        known = &layer;
         for (const std::string_view letters : components)
             if (layer.has(letters)) return layer.set(letters);
-    }
-    if (!is_known) return unknown(what, name);
+        return std::nullopt;
+    };
+    for (const Layer& layer : layers_)
+        if (layer.name == name || (layer.prefix == name && !name.empty()))
+            if (const auto set = set_of(layer)) return *set;
+    if (const std::optional<ChannelSet> lone = lone_channel(name); lone && known == nullptr)
+        if (const Layer* const layer = layer_of(*lone))
+            if (const auto set = set_of(*layer)) return *set;
+    for (const Layer& layer : layers_)
+        if (known == nullptr && fmt::format("{}.{}", layer.part, layer.name) == name)
+            if (const auto set = set_of(layer)) return *set;
+    if (known == nullptr) return unknown(what, name);
     return user_error(fmt::format("the layer \"{}\" lacks the components {} that {} needs", one_printable_line(name),
                                   components.front(), what));
 }
@@ -220,10 +228,51 @@ Result<> Finder::choose_view(FrameChannels& found) {
     return {};
 }
 
+const Layer* Finder::find_named_color(FrameChannels& found) const {
+    // How early a layer is taken; what is no picture, last of all.
+    constexpr std::array<std::string_view, 6> by_last{"combined", "rgba", "rgb", "c", "beauty", "default"};
+    constexpr std::size_t plain = by_last.size() + 2, any = plain + 1, never = any + 1;
+    const auto rank = [&](const Layer& layer) -> std::size_t {
+        if (!layer.has("rgb")) return never;
+        if (part_count_ == 1 && layer.is_plain()) return 0;
+        const std::string name = lower(layer.name), last = last_component(layer.name);
+        if (last == "composite" || last_component(parent(layer.name)) == "composite") return 1;
+        const auto* const known = std::ranges::find(by_last, last);
+        if (known != by_last.end()) return 2 + static_cast<std::size_t>(known - by_last.begin());
+        if (layer.is_plain()) return plain;
+        const auto has_word = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+        const bool is_data = last == "n" || last == "p" || last == "vector" || has_word("crypto") ||
+                             has_word("normal") || has_word("depth") || has_word("velocity") || has_word("motion") ||
+                             has_word("transparency") || has_word("position") || has_word("matte");
+        return is_data ? never : any;
+    };
+    const Layer* best = nullptr;
+    std::vector<const Layer*> equals;
+    for (const Layer& layer : layers_) {
+        const std::size_t own = rank(layer);
+        if (own == never || (best != nullptr && own > rank(*best))) continue;
+        if (best == nullptr || own < rank(*best)) equals.clear();
+        if (equals.empty()) best = &layer;
+        equals.push_back(&layer);
+    }
+    for (const Layer* const other : equals)
+        if (other != best) found.other_colors.push_back(other->name);
+    return best;
+}
+
 Result<> Finder::find_color(FrameChannels& found) const {
     if (const std::string* name = mapped("color")) {
         constexpr std::array<std::string_view, 2> components{"rgb", "xyz"};
-        if (auto lone = lone_channel(*name)) {
+        const auto lone = lone_channel(*name);
+        const Layer* const of_lone = lone ? layer_of(*lone) : nullptr;
+        // Red without a layer's name stands for the three.
+        const bool is_whole = of_lone != nullptr && of_lone->is_plain() && of_lone->has("rgb") &&
+                              of_lone->channel("r") == lone->channels[0];
+        if (is_whole) {
+            found.color = of_lone->set("rgba");
+            return {};
+        }
+        if (lone) {
             found.color = *lone;
             found.is_gray = true;
             found.color.channels = {lone->channels[0], lone->channels[0], lone->channels[0], -1};
@@ -240,11 +289,7 @@ Result<> Finder::find_color(FrameChannels& found) const {
         const auto layer = std::find_if(layers_.begin(), layers_.end(), accept);
         return layer == layers_.end() ? nullptr : &*layer;
     };
-    const Layer* layer = nullptr;
-    if (part_count_ == 1) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
-    if (layer == nullptr)
-        layer = first([](const Layer& l) { return last_component(l.name) == "combined" && l.has("rgb"); });
-    if (layer == nullptr) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
+    const Layer* layer = find_named_color(found);
     if (layer != nullptr) {
         found.color = layer->set("rgba");
         return {};
@@ -290,6 +335,7 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         layer = best([&](const Layer& l) { return lower(l.name).find("depth") != std::string::npos && is_lone_z(l); });
     if (layer == nullptr)
         layer = best([&](const Layer& l) { return l.is_plain() && l.part == color_.part && is_lone_z(l); });
+    if (layer == nullptr) layer = best([&](const Layer& l) { return l.is_plain() && is_lone_z(l); });
     if (layer != nullptr) {
         found.depth = layer->set("z");
         found.depth_scale = scale_of_depth(layer->name);
@@ -365,6 +411,12 @@ Result<FrameChannels> Finder::find() {
         if (what != "color" && what != "depth" && what != "normals" && what != "velocity")
             return user_error(fmt::format("a mapping of \"{}\"; color, depth, normals and velocity can be mapped",
                                           one_printable_line(what)));
+    // As `info` calls what is found without a mapping.
+    std::erase_if(names_, [&](const auto& mapping) {
+        const auto& [what, name] = mapping;
+        return name == what && !lone_channel(name) &&
+               std::ranges::none_of(layers_, [&](const Layer& l) { return l.name == name || l.prefix == name; });
+    });
     FrameChannels found;
     if (auto done = choose_view(found); !done) return failure(std::move(done));
     if (auto done = find_color(found); !done) return failure(std::move(done));

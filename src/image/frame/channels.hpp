@@ -39,6 +39,7 @@ struct FrameChannels {
     float depth_scale = 1;                   ///< metres for each unit, as far as the layer's name tells
     std::vector<std::string> views;          ///< of a stereo picture, if there are several
     std::string view;                        ///< that the colour is of; may be empty
+    std::vector<std::string> other_colors;   ///< layers that might as well be the colour, where no name decided
 };
 
 /// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the
@@ -53,9 +54,11 @@ inline constexpr std::string_view no_layer = "none";
 /// Every channel of the file by its full name, part name first where the file has several parts.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
 
-/// Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a stereo picture;
-/// empty: the first that has a colour. An error names the channels that were found and what was looked for, without the
-/// file name.
+/// Of several layers in colour the first of these is it: R, G, B of a file of one part; Composite; Combined; rgba; rgb;
+/// C; beauty; default; R, G, B of the first part; the first layer with colour. Red, green, blue and alpha in full are
+/// R, G, B, A. Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a stereo
+/// picture; empty: the first that has a colour. An error names the channels that were found and what was looked for,
+/// without the file name.
 [[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names,
                                                   const std::string& view = {});
 

@@ -133,8 +133,9 @@ TEST_F(ImageFrame, UnknownNameGivesTheNearest) {
     ASSERT_TRUE(add_mapping(options.names, "velocity=velocty"));
     const auto back = read_frame(file("a.exr"), options);
     ASSERT_FALSE(back);
-    EXPECT_EQ(back.error().text,
-              file("a.exr").string() + ": has no channels \"velocty\" for velocity; the nearest name is \"velocity\"");
+    EXPECT_TRUE(back.error().text.starts_with(file("a.exr").string() +
+                                              ": has no channels \"velocty\" for velocity, did you mean 'velocity'?"))
+        << back.error().text;
     EXPECT_FALSE(add_mapping(options.names, "depht=Z"));
     EXPECT_FALSE(add_mapping(options.names, "depth"));
     EXPECT_FALSE(add_mapping(options.names, "depth="));

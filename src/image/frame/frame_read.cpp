@@ -453,6 +453,11 @@ Result<FrameFile> FrameReader::read() {
     if (options_.view.empty() && found_.views.size() > 1)
         frame_.warnings.push_back(fmt::format("has the views {}: {} is developed, --eye says which",
                                               fmt::join(found_.views, ", "), found_.view));
+    if (!found_.other_colors.empty())
+        frame_.warnings.push_back(
+            fmt::format("the color is {}, although {} might be it as well; --map color=NAME says which",
+                        one_printable_line(found_.color.prefix.empty() ? "R, G, B" : found_.color.prefix),
+                        one_printable_line(fmt::format("{}", fmt::join(found_.other_colors, ", ")))));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
     frame_.attributes = decoder_.attributes(found_.color.part);
     if (options_.keeps_overscan)
