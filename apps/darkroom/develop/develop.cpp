@@ -399,8 +399,7 @@ class Develop {
 
     /// Read again, so that only those that are being encoded are in memory.
     Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
-        Result<darkroom::KeptLayers> layers =
-            darkroom::read_kept_layers(job_.steps[i].input, job_.frame.names, job_.frame.max_threads);
+        Result<darkroom::KeptLayers> layers = darkroom::read_kept_layers(job_.steps[i].input, job_.frame);
         if (!layers) return failure(std::move(layers));
         for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
         options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
@@ -438,6 +437,7 @@ class Develop {
 int run(const Options& options, const std::string& eye) {
     Result<Job> job = job_of(options, eye);
     if (!job) return fail(job.error());
+    tell_of_half_range(job->write);
     Develop develop(options, std::move(*job));
     const Result<> done = develop.run();
     return develop.exit_code(done ? exit_ok : fail(done.error()));

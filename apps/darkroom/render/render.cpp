@@ -121,6 +121,7 @@ class Render {
         if (!job) return failure(std::move(job));
         job_ = std::move(*job);
         if (job_.stream) stream_.emplace(*job_.stream);
+        tell_of_half_range(job_.write);
         const Result<darkroom::KernelStage> stage = flags_.device.stage();
         if (!stage) return failure(stage.error());
         develop_ = {.target = job_.target, .color = job_.color, .kernels = *stage, .fuse = flags_.device.is_fused()};

@@ -323,6 +323,11 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     return out;
 }
 
+void tell_of_half_range(const darkroom::WriteOptions& options) {
+    if (options.samples == darkroom::SampleKind::Float && options.compression.starts_with("dwa"))
+        warn(fmt::format("--bits float: {} keeps red, green and blue as halves", options.compression));
+}
+
 Result<> write(const std::filesystem::path& path, DevelopedPicture picture, const darkroom::WriteOptions& options) {
     const auto [width, height] = picture.extent;
     if (!picture.bytes.empty()) return darkroom::write_bytes(path, width, height, picture.bytes, options);

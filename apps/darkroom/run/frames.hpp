@@ -50,6 +50,8 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
                                                                                 const darkroom::DevelopDesc& desc,
                                                                                 darkroom::ReferenceHistories& histories,
                                                                                 std::vector<std::string>& left_out);
+/// A warning, where floats are asked for and their compression keeps less.
+void tell_of_half_range(const darkroom::WriteOptions& options);
 [[nodiscard]] darkroom::Result<> write(const std::filesystem::path& path, darkroom::DevelopedPicture picture,
                                        const darkroom::WriteOptions& options);
 

@@ -46,20 +46,27 @@ class MemoryOutput final : public Imf::OStream {
 
 float clamped(float value, float largest) { return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest); }
 
+bool is_dwa(Imf::Compression compression) {
+    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+}
+
 /// Rows of one channel as they are stored.
-void convert(const ExrChannel& channel, std::size_t first, std::size_t count, std::vector<std::byte>& to) {
+void convert(const ExrChannel& channel, Imf::Compression compression, std::size_t first, std::size_t count,
+             std::vector<std::byte>& to) {
     const float* from = channel.values + first * channel.stride;
     to.resize(count * size_of(channel.kind));
+    const bool is_cosine = is_dwa(compression) && is_changed_by(compression, channel.name, channel.kind);
     if (channel.kind == SampleKind::Half) {
-        constexpr float largest_half = 65504.0f;
+        const float largest_half = is_cosine ? largest_in_dwa : 65504.0F;
         for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
             const std::uint16_t bits = imath_float_to_half(channel.is_clamped ? clamped(*from, largest_half) : *from);
             std::memcpy(to.data() + i * sizeof bits, &bits, sizeof bits);
         }
         return;
     }
+    const float largest_float = is_cosine ? largest_in_dwa : std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
-        const float value = channel.is_clamped ? clamped(*from, std::numeric_limits<float>::max()) : *from;
+        const float value = channel.is_clamped ? clamped(*from, largest_float) : *from;
         std::memcpy(to.data() + i * sizeof value, &value, sizeof value);
     }
 }
@@ -77,7 +84,8 @@ void write_pixels(File& file, const ExrPart& part) {
         Imf::FrameBuffer buffer;
         for (std::size_t i = 0; i < part.channels.size(); ++i) {
             const ExrChannel& channel = part.channels[i];
-            convert(channel, first, static_cast<std::size_t>(width) * static_cast<std::size_t>(rows), samples[i]);
+            convert(channel, part.header.compression(), first,
+                    static_cast<std::size_t>(width) * static_cast<std::size_t>(rows), samples[i]);
             buffer.insert(channel.name, Imf::Slice::Make(type_of(channel.kind), samples[i].data(),
                                                          Imath::V2i(window.min.x, row), width, rows));
         }
@@ -87,6 +95,13 @@ void write_pixels(File& file, const ExrPart& part) {
 }
 
 }  // namespace
+
+bool is_changed_by(Imf::Compression compression, std::string_view channel, SampleKind kind) {
+    if (compression == Imf::PXR24_COMPRESSION) return kind == SampleKind::Float;
+    if (compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION) return kind == SampleKind::Half;
+    constexpr std::array<std::string_view, 6> by_cosine{"R", "G", "B", "Y", "RY", "BY"};
+    return is_dwa(compression) && std::ranges::count(by_cosine, channel.substr(channel.rfind('.') + 1)) > 0;
+}
 
 Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_view compression) {
     Imf::Header header(static_cast<int>(width), static_cast<int>(height));
@@ -122,7 +137,7 @@ Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::s
             Imf::OutputFile file(memory, headers.front(), threads);
             write_pixels(file, parts.front());
         } else {
-            Imf::MultiPartOutputFile file(memory, headers.data(), static_cast<int>(headers.size()), false, threads);
+            Imf::MultiPartOutputFile file(memory, headers.data(), static_cast<int>(headers.size()), true, threads);
             for (std::size_t i = 0; i < parts.size(); ++i) {
                 Imf::OutputPart output(file, static_cast<int>(i));
                 write_pixels(output, parts[i]);

@@ -2,6 +2,7 @@
 #pragma once
 // Internal to src/image: planes of floats made into an OpenEXR file in memory, by OpenEXR.
 
+#include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
 
 #include <array>
@@ -42,7 +43,14 @@ void add_rec709(Imf::Header& header);
 inline constexpr std::array<std::string_view, 10> exr_compressions{"none",  "rle", "zips", "zip",  "piz",
                                                                    "pxr24", "b44", "b44a", "dwaa", "dwab"};
 
-/// One part, or several. `max_threads`: that compress, 0: as many as there are processors. Errors name no file.
+/// Would a channel of this name and kind come back as other numbers? DWA packs the last names R, G, B, Y, RY and BY by
+/// its cosine transform, PXR24 floats as 24 bits, B44 and B44A halves.
+[[nodiscard]] bool is_changed_by(Imf::Compression compression, std::string_view channel, SampleKind kind);
+/// The largest light that DWA gives back as a number: its rounding takes what is brighter beyond the largest half.
+inline constexpr float largest_in_dwa = 60000.0F;
+
+/// One part, or several, which share the display window, the pixel aspect, the chromaticities and the time code of the
+/// first. `max_threads`: that compress, 0: as many as there are processors. Errors name no file.
 [[nodiscard]] Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::size_t max_threads = 0);
 
 /// The same into a file.

@@ -236,10 +236,11 @@ void FrameReader::finish_depth() {
     if (!frame_.depth) return;
     std::vector<float>& values = frame_.depth->values;
     const auto scale = static_cast<float>(options_.depth_scale.value_or(found_.depth_scale));
-    bool has_zero = false, has_negative = false, has_positive = false;
+    std::size_t zeros = 0;
+    bool has_negative = false, has_positive = false;
     for (float& value : values) {
         if (!std::isfinite(value) || value >= 1e9f) continue;
-        has_zero |= value == 0;
+        zeros += value == 0;
         has_negative |= value < 0;
         has_positive |= value > 0;
         if (options_.is_depth_inverse) value = value == 0 ? sky_depth : 1 / value;
@@ -248,10 +249,13 @@ void FrameReader::finish_depth() {
     if (has_negative && !has_positive)
         for (float& value : values)
             if (value < 0 && std::isfinite(value)) value = -value;
-    if (has_zero && !options_.is_depth_inverse && decoder_.has_attribute_starting(found_.color.part, "nuke/"))
-        frame_.warnings.emplace_back(
-            "depth that Nuke wrote has zeros and is taken as a distance; where it is 1 / distance, --depth-inverse "
-            "says so");
+    if (zeros > 0 && !options_.is_depth_inverse)
+        frame_.warnings.push_back(
+            fmt::format("depth is 0 in {:.3g} % of the pixels, and is taken as a surface at the camera{}",
+                        100.0 * static_cast<double>(zeros) / static_cast<double>(values.size()),
+                        decoder_.has_attribute_starting(found_.color.part, "nuke/")
+                            ? ": Nuke wrote it; where it is 1 / distance, --depth-inverse says so"
+                            : "; some renderers write it where nothing is"));
     for (float& distance : values) {
         if (distance < 1e9f && std::isfinite(distance)) continue;
         frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();

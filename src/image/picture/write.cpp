@@ -2,6 +2,7 @@
 #include "image/picture/write.hpp"
 #include "image/color/configuration.hpp"
 
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -192,16 +193,61 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
     return write_file(path, *bytes);
 }
 
-Result<> add_layers(const std::filesystem::path& path, const Picture& picture, const KeptLayers& layers,
-                    ExrPart& part) {
+void add_channels(const KeptLayers::Part& from, ExrPart& to) {
+    for (const KeptLayers::Channel& channel : from.channels)
+        to.channels.push_back(
+            {.name = channel.name, .kind = channel.kind, .values = channel.values.data(), .is_clamped = false});
+}
+
+/// The picture's part among those of the frame, in their order. What its compression would change is in a part beside
+/// it.
+Result<std::vector<ExrPart>> with_layers(const std::filesystem::path& path, const Picture& picture,
+                                         const KeptLayers& layers, ExrPart part) {
     if (layers.width != picture.width || layers.height != picture.height)
         return user_error(
             fmt::format("{}: the layers of the frame are {}x{}, the picture {}x{}; they are kept at their size",
                         path.string(), layers.width, layers.height, picture.width, picture.height));
-    for (const KeptLayers::Channel& channel : layers.channels)
-        part.channels.push_back(
-            {.name = channel.name, .kind = channel.kind, .values = channel.values.data(), .is_clamped = false});
-    return {};
+    for (ExrChannel& channel : part.channels) channel.name.insert(0, layers.color_prefix);
+    const auto is_changed = [&](const KeptLayers::Channel& channel) {
+        return is_changed_by(part.header.compression(), channel.name, channel.kind);
+    };
+    const auto is_taken = [&](const std::string& name) {
+        return std::ranges::find(layers.parts, name, &KeptLayers::Part::name) != layers.parts.end();
+    };
+    const auto header_of = [&](const KeptLayers::Part& kept, bool is_lossless) {
+        Imf::Header header = exr_header(picture.width, picture.height);
+        if (!is_lossless) header.compression() = part.header.compression();
+        const auto [x, y, width, height] = kept.window;
+        const Imath::V2i first(x, y), size(static_cast<int>(width), static_cast<int>(height));
+        header.dataWindow() = {first, first + size - Imath::V2i(1)};
+        if (kept.attributes) kept.attributes->add_to(header);
+        if (!kept.views.empty()) Imf::addMultiView(header, kept.views);
+        return header;
+    };
+    std::vector<ExrPart> out;
+    for (std::size_t i = 0; i < layers.parts.size(); ++i) {
+        const KeptLayers::Part& kept = layers.parts[i];
+        const bool is_lossless = std::ranges::any_of(kept.channels, is_changed);
+        ExrPart* to = nullptr;
+        if (i == layers.color_part) {
+            if (!kept.views.empty()) Imf::addMultiView(part.header, kept.views);
+            to = &out.emplace_back(part);
+            to->header.setName(kept.name.empty() ? "picture" : kept.name);
+        }
+        if (to == nullptr || is_lossless) {
+            if (kept.channels.empty()) continue;
+            std::string name = kept.name;
+            if (to != nullptr) {
+                name = kept.name.empty() ? "layers" : kept.name + ".layers";
+                while (is_taken(name)) name += "_";
+            }
+            to = &out.emplace_back(ExrPart{.header = header_of(kept, is_lossless)});
+            to->header.setName(name);
+        }
+        add_channels(kept, *to);
+    }
+    if (out.size() == 1) out.front().header.erase("name");
+    return out;
 }
 
 Result<> write_floats(const std::filesystem::path& path, const Picture& picture, SampleKind samples,
@@ -222,9 +268,9 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
         part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});
-    if (options.layers)
-        if (Result<> done = add_layers(path, picture, *options.layers, part); !done) return done;
-    return write_exr(path, {&part, 1}, options.max_threads);
+    if (!options.layers) return write_exr(path, {&part, 1}, options.max_threads);
+    const Result<std::vector<ExrPart>> parts = with_layers(path, picture, *options.layers, std::move(part));
+    return parts ? write_exr(path, *parts, options.max_threads) : failure(parts.error());
 }
 
 /// What the path and the options ask for, checked.
@@ -244,6 +290,17 @@ Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t wid
 }
 
 }  // namespace
+
+std::uint64_t clamped_by_compression(const std::filesystem::path& path, const Picture& picture,
+                                     const WriteOptions& options) {
+    const Result<FileKind> kind = file_kind(path);
+    if (!kind || *kind != FileKind::OpenExr || !options.compression.starts_with("dwa")) return 0;
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 4)
+        count += std::any_of(&picture.pixels[i], &picture.pixels[i + 3],
+                             [](float value) { return std::abs(value) > largest_in_dwa; });
+    return count;
+}
 
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
     DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);

@@ -51,6 +51,11 @@ struct WriteOptions {
 /// What files of such samples hold, where the options name a space.
 [[nodiscard]] std::optional<ColorState> color_of(const WriteOptions& options, SampleKind samples);
 
+/// How many pixels have light that their compression cannot hold, and that is clamped before it packs: DWA keeps
+/// halves, and rounds.
+[[nodiscard]] std::uint64_t clamped_by_compression(const std::filesystem::path& path, const Picture& picture,
+                                                   const WriteOptions& options);
+
 /// Integer files clamp to 0..1 and round to nearest; half and Radiance clamp to what they can hold; NaN is written as
 /// 0.
 [[nodiscard]] Result<> write_picture(const std::filesystem::path& path, const Picture& picture,
