@@ -25,7 +25,12 @@ TEST(VideoFrame, RatesAreThoseOfFilmAndTelevision) {
     };
     EXPECT_EQ(rate(24), "24:1");
     EXPECT_EQ(rate(23.976), "24000:1001");
+    EXPECT_EQ(rate(23.98), "24000:1001");
     EXPECT_EQ(rate(29.97), "30000:1001");
+    EXPECT_EQ(rate(47.95), "48000:1001");
+    EXPECT_EQ(rate(59.94), "60000:1001");
+    EXPECT_EQ(rate(119.88), "120000:1001");
+    EXPECT_EQ(rate(23.95), "23950:1000");
     EXPECT_EQ(rate(60000.0 / 1001), "60000:1001");
     EXPECT_EQ(rate(12.5), "12500:1000");
     EXPECT_EQ(rate(0.001), "1:1000");

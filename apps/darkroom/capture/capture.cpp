@@ -42,7 +42,7 @@ struct Options {
     DeviceFlags device;
     std::string scene, folder, frames, scales = "1,1.5,2,3", mean = "tone-mapped";
     std::optional<std::string> truth_frames;
-    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
     NumberFlag samples{"--samples", {.least = 2, .most = scene::most_samples, .is_whole = true}};
 };
 

@@ -46,8 +46,9 @@ struct Options {
     std::vector<std::string> inputs;
     std::string out, size, output_size;
     std::optional<std::string> frames;
+    std::string gaps;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
-    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
     bool is_reference = false, keeps_layers = false;
 };
 
@@ -66,6 +67,7 @@ struct Step {
     std::filesystem::path input, output;
     long long number = 0;
     bool is_written = false;
+    long long missing = 0;  ///< frames that are asked for and not there, between the one before and this
 };
 
 /// Everything that can be known before a frame is read.
@@ -84,6 +86,7 @@ struct Job {
     std::optional<darkroom::NewSize> size;
     std::optional<double> time, frames_per_second;
     std::optional<StreamDesc> stream;
+    long long step = 1;  ///< from one input's number to the next, where none is missing
 
     [[nodiscard]] bool is_asked_for(long long number) const { return !frames || frames->contains(number); }
 };
@@ -91,6 +94,29 @@ struct Job {
 darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
     return user_error(
         fmt::format("--keep-layers: {} holds no layers; .exr does", darkroom::printable(output.string())));
+}
+
+/// How many frames that are asked for are missing before an input.
+long long missing_before(const Job& job, std::size_t place) {
+    if (place == 0) return 0;
+    long long out = 0;
+    const long long before = job.inputs[place - 1].number, last = job.inputs[place].number;
+    if (!job.frames) return std::max(0LL, (last - before) / job.step - 1);
+    for (long long number = before + job.step; number < last; number += job.step) out += job.is_asked_for(number);
+    return out;
+}
+
+/// Streams go on at their pace over frames that are missing, or do not begin.
+Result<> check_gaps(const Options& options, const Job& job) {
+    if (!options.gaps.empty() && options.gaps != "hold" && options.gaps != "stop")
+        return user_error(fmt::format("--gaps {}: allowed is hold, stop", darkroom::printable(options.gaps)));
+    if (!options.gaps.empty() && !job.stream) return user_error("--gaps: works for -o -, not for files");
+    if (options.gaps != "stop") return {};
+    for (const Step& step : job.steps)
+        if (step.is_written && step.missing > 0)
+            return user_error(fmt::format("--gaps stop: {} frames are missing before {}", step.missing,
+                                          darkroom::printable(step.input.string())));
+    return {};
 }
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
@@ -128,7 +154,8 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
             job.steps.push_back({i, inputs[i].path, (*outputs)[i], inputs[i].number, is_written});
     }
     std::ranges::reverse(job.steps);
-    return {};
+    for (Step& step : job.steps) step.missing = missing_before(job, step.place);
+    return check_gaps(options, job);
 }
 
 /// What is read, and the place of the last one that is asked for.
@@ -140,6 +167,12 @@ Result<std::size_t> add_inputs(const Options& options, Job& job) {
     Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(names);
     if (!inputs) return failure(std::move(inputs));
     job.inputs = std::move(*inputs);
+    // Frames on twos are a step apart as others are.
+    long long least = 0;
+    for (std::size_t i = 1; i < job.inputs.size(); ++i)
+        if (const long long step = job.inputs[i].number - job.inputs[i - 1].number; step > 0)
+            least = least == 0 ? step : std::min(least, step);
+    job.step = std::max(1LL, least);
     if (options.frames) {
         Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
         if (!parsed) return failure(std::move(parsed));
@@ -326,14 +359,20 @@ class Develop {
         if (job_.time) item.input.time = *job_.time;
         if (!job_.frames_per_second) return;
         item.input.time = static_cast<double>(step.number) / *job_.frames_per_second;
-        item.input.delta_time = 1 / *job_.frames_per_second;
+        item.input.delta_time = static_cast<double>(job_.step) / *job_.frames_per_second;
+    }
+
+    /// Does motion lead from this one to that which was developed before it?
+    [[nodiscard]] bool follows(const Step& step) const {
+        if (step.place != next_place_) return false;
+        return step.place == 0 || step.number - job_.inputs[step.place - 1].number == job_.step;
     }
 
     Result<> begin(std::size_t i) {
         Item& item = items_[i];
         for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
         if (i == 0) tell_of_assumed_view(item.frame, shown(i));
-        item.input.camera.is_cut = job_.steps[i].place != next_place_;
+        item.input.camera.is_cut = !follows(job_.steps[i]);
         next_place_ = job_.steps[i].place + 1;
         if (Result<> done = motion_.advance(*composer_, job_.steps[i].place, item.input.time); !done) return done;
         const VkExtent2D output = job_.develop.target_extent;
@@ -408,7 +447,18 @@ class Develop {
 
     Result<> deliver(std::size_t i) {
         if (!stream_ || !job_.steps[i].is_written) return {};
-        return stream_->write(items_[i].packed, items_[i].extent, shown(i));
+        const long long missing = job_.steps[i].missing;
+        if (missing > 0 && !last_packed_.empty()) {
+            warn(
+                fmt::format("{} frames are missing before {}: the stream holds the one before; --gaps stop refuses "
+                            "such sequences",
+                            missing, shown(i)));
+            for (long long held = 0; held < missing; ++held)
+                if (Result<> done = stream_->write(last_packed_, items_[i].extent, shown(i)); !done) return done;
+        }
+        if (Result<> done = stream_->write(items_[i].packed, items_[i].extent, shown(i)); !done) return done;
+        last_packed_ = has_gaps_ ? std::move(items_[i].packed) : std::vector<std::byte>();
+        return {};
     }
 
     [[nodiscard]] std::optional<Made> made(std::size_t i) const {
@@ -430,6 +480,9 @@ class Develop {
     std::unique_ptr<darkroom::Developer> developer_;
     std::optional<std::vector<std::string>> last_left_out_;
     std::size_t next_place_ = 0;
+    /// Of a stream with gaps: the picture before.
+    std::vector<std::byte> last_packed_;
+    bool has_gaps_ = std::ranges::any_of(job_.steps, [](const Step& step) { return step.missing > 0; });
     darkroom::ReferenceHistories histories_;
     PassTimes pass_times_;
 };
@@ -484,6 +537,9 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
     command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
     command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");
+    command.add_option("--gaps", options->gaps, "Of -o -, where frames are missing: hold the one before, or stop")
+        .type_name("hold|stop")
+        .default_str("hold");
     options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");
     options->frames_per_second.add_to(command, "Frames a second, for times and motion").type_name("N");
     options->frame.add_to(command);

@@ -7,6 +7,7 @@
 
 #include "core/text/param_text.hpp"
 #include "core/text/quantity.hpp"
+#include "image/picture/video_frame.hpp"
 
 namespace app {
 
@@ -29,7 +30,7 @@ Flag NumberFlag::add_to(CommandFlags command, const std::string& doc) {
 
 Result<std::optional<double>> NumberFlag::value() const {
     if (!text_) return std::optional<double>();
-    const std::optional<double> number = darkroom::parse_quantity(*text_, range_.unit);
+    std::optional<double> number = darkroom::parse_quantity(*text_, range_.unit);
     if (!number || (range_.is_whole && *number != std::floor(*number)))
         return user_error(fmt::format("{}: '{}' is not a {}, allowed is {}", name_, darkroom::printable(*text_),
                                       range_.is_whole ? "whole number" : "number", interval(range_)));
@@ -37,6 +38,8 @@ Result<std::optional<double>> NumberFlag::value() const {
                                           : *number >= range_.least && *number <= range_.most;
     if (!is_inside)
         return user_error(fmt::format("{} = {}: allowed is {}", name_, darkroom::printable(*text_), interval(range_)));
+    if (const darkroom::FrameRate rate = darkroom::frame_rate(range_.is_rate ? *number : 1); rate.denominator == 1001)
+        number = rate.numerator / 1001.0;
     return number;
 }
 

@@ -18,6 +18,7 @@ struct NumberRange {
     bool is_open = false;   ///< (least, most): the ends are not allowed
     bool is_whole = false;  ///< whole numbers only
     std::string_view unit = {};
+    bool is_rate = false;  ///< frames a second: 23.98 and its like are television's, 24000/1001
 };
 
 /// Stays where it is: the parser keeps a reference to it.

@@ -81,7 +81,7 @@ class RenderFlags {
     std::string out_ = "render.png";
     std::optional<std::string> frame_, frames_;
     NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
-    NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
+    NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
     NumberFlag render_scale_{"--render-scale", {.least = 0.1, .most = 1}};
     NumberFlag aperture_{"--aperture", {.least = 0.5, .most = 64}};
     NumberFlag focus_{"--focus", {.least = 0.01, .most = 1e5, .unit = "m"}};

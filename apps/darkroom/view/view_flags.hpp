@@ -32,7 +32,7 @@ struct ViewFlags {
     NumberFlag frames{"--frames", {.least = 1, .most = 1e9, .is_whole = true}};
     NumberFlag peak{"--peak-nits", {.least = 100, .most = 10000, .unit = "cd/m2"}};
     NumberFlag frame_time{"--frame-time", {.least = 0.1, .most = 1000, .unit = "ms"}};
-    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
 };
 
 }  // namespace app

@@ -36,6 +36,11 @@ struct Pattern {
     [[nodiscard]] std::string name(long long number) const {
         return fmt::format("{}{:0{}}{}", before, number, width, after);
     }
+    /// Below 0 some count the sign among the digits, as printf does, and others write it before them.
+    [[nodiscard]] bool names(long long number, std::string_view file) const {
+        return file == name(number) ||
+               (number < 0 && file == fmt::format("{}{:0{}}{}", before, number, width + 1, after));
+    }
 };
 
 constexpr int widest = 18;
@@ -153,7 +158,7 @@ Result<> expand(std::string input, std::vector<Found>& files) {
         if (!name.starts_with(pattern.before) || !name.ends_with(pattern.after)) continue;
         const auto number = whole_number(std::string_view(name).substr(
             pattern.before.size(), name.size() - pattern.before.size() - pattern.after.size()));
-        if (!number || (*frames && !(*frames)->contains(*number)) || pattern.name(*number) != name) continue;
+        if (!number || (*frames && !(*frames)->contains(*number)) || !pattern.names(*number, name)) continue;
         found.emplace_back(*number, path.has_parent_path() ? folder / name : fs::path(name));
     }
     if (code) return user_error(fmt::format("{}: cannot list the folder: {}", given, code.message()));

@@ -72,6 +72,12 @@ TEST_F(ImageSequence, FramesInBracketsAreChosenAndNothingIsAnError) {
     EXPECT_FALSE(expand_inputs(std::vector<std::string>{file("no/s%02d.exr").string()}));
 }
 
+TEST_F(ImageSequence, NumbersBelowZeroAreFoundWithTheirSignBeforeOrAmongTheDigits) {
+    for (const char* const name : {"b.-0002.exr", "b.-001.exr", "b.0000.exr", "b.-3.exr"}) put(file(name), "");
+    EXPECT_EQ(numbers_of({"b.####.exr"}), (Numbers{-2, -1, 0}));
+    EXPECT_EQ(numbers_of({"b.%04d.exr"}), (Numbers{-2, -1, 0}));
+}
+
 TEST(ImageSequenceNames, NumbersGoIntoPatterns) {
     EXPECT_EQ(numbered("a/b.%04d.png", 7), "a/b.0007.png");
     EXPECT_EQ(numbered("a/b.%d.png", 12345), "a/b.12345.png");

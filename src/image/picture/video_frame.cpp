@@ -42,9 +42,11 @@ std::vector<std::byte> planes_of(std::span<const std::uint8_t> rgba) {
 FrameRate frame_rate(double frames_per_second) {
     const auto whole = static_cast<std::uint32_t>(std::lround(frames_per_second));
     if (whole > 0 && std::abs(frames_per_second - whole) < 1e-6 * whole) return {whole, 1};
-    // 23.976 is written for 24000/1001 = 23.97602...
+    // 24000/1001 is 23.97602..., and written as 23.976 or 23.98.
     const auto nominal = static_cast<std::uint32_t>(std::lround(frames_per_second * 1.001));
-    if (nominal > 0 && std::abs(frames_per_second - nominal / 1.001) < 1e-3) return {nominal * 1000, 1001};
+    const bool is_of_television = nominal % 24 == 0 || nominal % 30 == 0;
+    const double error = std::abs(frames_per_second - nominal / 1.001);
+    if (nominal > 0 && error < (is_of_television ? 5e-3 : 1e-3)) return {nominal * 1000, 1001};
     return {std::max(1U, static_cast<std::uint32_t>(std::lround(frames_per_second * 1000))), 1000};
 }
 
