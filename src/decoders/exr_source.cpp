@@ -148,7 +148,8 @@ FilePart describe(const OpenPart& part) {
                  .width = static_cast<std::uint32_t>(data.max.x - data.min.x + 1),
                  .height = static_cast<std::uint32_t>(data.max.y - data.min.y + 1),
                  .display_width = static_cast<std::uint32_t>(display.max.x - display.min.x + 1),
-                 .display_height = static_cast<std::uint32_t>(display.max.y - display.min.y + 1)};
+                 .display_height = static_cast<std::uint32_t>(display.max.y - display.min.y + 1),
+                 .is_associated = true};
     if (Imf::hasMultiView(header)) out.views = Imf::multiView(header);
     for (const Channel& channel : part.channels) {
         out.channels.push_back(channel.name);

@@ -14,6 +14,10 @@ enum class SampleKind { Integer8, Integer16, Integer32, Half, Float };
 
 [[nodiscard]] std::string_view name_of(FileKind kind);
 [[nodiscard]] std::string_view name_of(SampleKind kind);
+/// Of 8 or 16 bits: code values. Others are light, or counts.
+[[nodiscard]] constexpr bool is_integer(SampleKind kind) {
+    return kind == SampleKind::Integer8 || kind == SampleKind::Integer16;
+}
 /// Bytes of one sample.
 [[nodiscard]] std::size_t size_of(SampleKind kind);
 
@@ -37,6 +41,8 @@ struct FilePart {
     std::uint32_t height = 0;
     std::uint32_t display_width = 0;
     std::uint32_t display_height = 0;
+    /// The file's colours are multiplied by alpha: light in OpenEXR, light or code values in TIFF, by its tag.
+    bool is_associated = false;
 };
 
 /// The text with everything but printable ASCII replaced, one line, at most 300 characters: names and messages out of

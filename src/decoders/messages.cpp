@@ -94,6 +94,10 @@ void take_part(Unpacker& from, FilePart& part) {
         from.take(*side);
         from.expect(*side >= 1);
     }
+    std::uint32_t is_associated = 0;
+    from.take(is_associated);
+    from.expect(is_associated <= 1);
+    part.is_associated = is_associated != 0;
 }
 
 }  // namespace
@@ -111,6 +115,7 @@ std::vector<std::byte> packed(const PictureDescription& description) {
         for (const int place : {part.x, part.y}) to.put(place);
         for (const std::uint32_t side : {part.width, part.height, part.display_width, part.display_height})
             to.put(side);
+        to.put(std::uint32_t{part.is_associated});
         to.put(row_unit);
         to.put(static_cast<std::uint32_t>(attributes.size()));
         for (const auto& [name, numbers] : attributes) {

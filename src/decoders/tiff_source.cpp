@@ -9,6 +9,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,10 +109,14 @@ class TiffSource final : public AttributedSource {
         const bool is_real = format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32);
         if ((!is_integer && !is_real) || compression == COMPRESSION_JPEG) return false;
         FilePart part;
-        if (meaning == PHOTOMETRIC_MINISBLACK) part.channels = {"Y"};
+        is_negative_ = meaning == PHOTOMETRIC_MINISWHITE;
+        if (meaning == PHOTOMETRIC_MINISBLACK || is_negative_) part.channels = {"Y"};
         if (meaning == PHOTOMETRIC_RGB) part.channels = {"R", "G", "B"};
         if (part.channels.empty()) return false;
-        if (samples == part.channels.size() + 1 && has_alpha()) part.channels.emplace_back("A");
+        if (const std::optional<bool> is_associated = alpha(); is_associated && samples == part.channels.size() + 1) {
+            part.channels.emplace_back("A");
+            part.is_associated = *is_associated;
+        }
         if (samples != part.channels.size()) return false;
         part.kinds.assign(samples, is_real      ? bits == 16 ? SampleKind::Half : SampleKind::Float
                                    : bits == 16 ? SampleKind::Integer16
@@ -138,11 +143,33 @@ class TiffSource final : public AttributedSource {
     std::uint32_t row_unit(std::size_t /*part*/) const override { return is_tiled_ ? chunk_height_ : 32; }
 
   private:
-    [[nodiscard]] bool has_alpha() const {
+    /// Whether colours are multiplied by it; nothing where there is none.
+    [[nodiscard]] std::optional<bool> alpha() const {
         std::uint16_t count = 0;
         std::uint16_t* what = nullptr;
-        return TIFFGetField(file_.get(), TIFFTAG_EXTRASAMPLES, &count, &what) == 1 && count == 1 &&
-               (what[0] == EXTRASAMPLE_ASSOCALPHA || what[0] == EXTRASAMPLE_UNASSALPHA);
+        if (TIFFGetField(file_.get(), TIFFTAG_EXTRASAMPLES, &count, &what) != 1 || count != 1) return std::nullopt;
+        if (what[0] != EXTRASAMPLE_ASSOCALPHA && what[0] != EXTRASAMPLE_UNASSALPHA) return std::nullopt;
+        return what[0] == EXTRASAMPLE_ASSOCALPHA;
+    }
+    /// Of a picture whose 0 is white: grey, and alpha as it is.
+    void turn_around() {
+        const std::size_t step = pixel_bytes();
+        for (std::size_t at = 0; at < band_.size(); at += step) {
+            const bool is_half = parts_[0].kinds[0] == SampleKind::Half;
+            if (parts_[0].kinds[0] == SampleKind::Float) {
+                float value = 0;
+                std::memcpy(&value, &band_[at], sizeof value);
+                value = 1 - value;
+                std::memcpy(&band_[at], &value, sizeof value);
+            } else if (is_half) {
+                Imath::half value;
+                std::memcpy(&value, &band_[at], sizeof value);
+                value = 1 - value;
+                std::memcpy(&band_[at], &value, sizeof value);
+            } else {
+                for (std::size_t i = 0; i < sample_bytes_; ++i) band_[at + i] = ~band_[at + i];
+            }
+        }
     }
     [[nodiscard]] std::size_t pixel_bytes() const { return sample_bytes_ * parts_[0].channels.size(); }
 
@@ -175,6 +202,7 @@ class TiffSource final : public AttributedSource {
                             std::memcpy(to, from, pixel);
                 }
             }
+        if (is_negative_) turn_around();
         return true;
     }
 
@@ -218,7 +246,7 @@ class TiffSource final : public AttributedSource {
 
     TiffFile file_;
     std::size_t sample_bytes_ = 1;
-    bool is_apart_ = false, is_tiled_ = false;
+    bool is_apart_ = false, is_tiled_ = false, is_negative_ = false;
     std::uint32_t chunk_width_ = 1, chunk_height_ = 1;
     std::uint32_t band_number_ = 0;  ///< one more than that which `band_` holds
     std::vector<std::byte> band_, chunk_;

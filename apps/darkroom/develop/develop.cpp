@@ -23,6 +23,7 @@
 #include "core/text/param_text.hpp"
 #include "develop/developer.hpp"
 #include "image/frame/sequence.hpp"
+#include "image/picture/alpha.hpp"
 #include "image/picture/resize.hpp"
 
 namespace app {
@@ -140,6 +141,9 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         job.develop.target = target_for(*samples, job.write);
         job.develop.color = darkroom::color_of(job.write, *samples);
     }
+    // Made of the picture before it is rounded.
+    if (job.write.has_alpha_of_glow && job.develop.target == darkroom::DevelopTarget::Encoded8)
+        job.develop.target = darkroom::DevelopTarget::EncodedFloat;
     if (job.write.alpha) job.develop.color = with_alpha(job.develop.color, job.develop.target, job.write);
     suit(job.look, job.develop.target, job.write);
     if (!job.stream)
@@ -339,15 +343,16 @@ class Develop {
                                            .of(frame->color.width, frame->color.height);
         if (Result<> done = darkroom::check_extent(*device_, {size.width, size.height}); !done)
             return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
+        // Alpha that is not kept is a mask at most, as scenes write it.
+        const bool has_alpha = job_.write.alpha && frame->has_alpha;
+        if (has_alpha && !frame->is_associated) darkroom::associate(frame->color);
         Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), size);
         if (!sized) return failure(std::move(sized));
         Item& item = items_[i];
         item.frame = std::move(*sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
-        // Else alpha is a mask at most, as scenes write it.
-        item.input.is_color_associated =
-            job_.write.alpha && item.frame.has_alpha && item.frame.kind == darkroom::FileKind::OpenExr;
+        item.input.is_color_associated = has_alpha;
         set_time(step, item);
         return {};
     }

@@ -55,7 +55,12 @@ void WriteFlags::add_to(CommandFlags command) {
     const std::string group = "The files";
     command.add_option("--bits", bits_, "Samples of the file").type_name("8|16|half|float").group(group);
     space_.add_to(command, group);
-    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque").group(group);
+    command
+        .add_flag(
+            "--alpha", alpha_,
+            "Keeps alpha; without it pictures are opaque. --alpha=glow: in PNG and TIFF of integers light over what "
+            "is transparent has an alpha of its own")
+        .group(group);
     command
         .add_option("--compression", compression_,
                     "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; TIFF: none, packbits, lzw or zip; "
@@ -66,11 +71,17 @@ void WriteFlags::add_to(CommandFlags command) {
         .type_name(fmt::format("{}", fmt::join(format_names, "|")))
         .group(group);
     quality_.add_to(command, "Quality of JPEG files").type_name("N").default_str("95").group(group);
+    command.add_option("--chroma", chroma_, "Resolution of JPEG's red and blue; default: 4:4:4 from a quality of 90 on")
+        .type_name("4:4:4|4:2:2|4:2:0")
+        .group(group);
     ocio.add_to(command, true);
 }
 
 Result<darkroom::WriteOptions> WriteFlags::options() const {
-    darkroom::WriteOptions out{.alpha = has_alpha_, .compression = compression_};
+    if (const bool is_known = alpha_.empty() || alpha_ == "true" || alpha_ == "false" || alpha_ == "glow"; !is_known)
+        return user_error(fmt::format("--alpha={}: allowed is glow", printable(alpha_)));
+    darkroom::WriteOptions out{
+        .alpha = has_alpha(), .has_alpha_of_glow = alpha_ == "glow", .chroma = chroma_, .compression = compression_};
     if (bits_) {
         const Result<darkroom::SampleKind> bits = parse_bits(*bits_);
         if (!bits) return failure(bits.error());
@@ -98,13 +109,13 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
     if (out != stream_name) return user_error(fmt::format("--format {}: works for -o -, not for files", *format_));
     const StreamDesc desc{.format = static_cast<darkroom::VideoFormat>(name - format_names.begin()),
                           .rate = darkroom::frame_rate(frames_per_second),
-                          .has_alpha = has_alpha_};
+                          .has_alpha = has_alpha()};
     for (const auto& [is_given, flag] :
          {std::pair(bits_.has_value(), "--bits"), std::pair(space_.is_given(), "--output-space"),
           std::pair(!compression_.empty(), "--compression"), std::pair(quality_.is_given(), "--quality"),
-          std::pair(ocio.has_display(), "--display")})
+          std::pair(!chroma_.empty(), "--chroma"), std::pair(ocio.has_display(), "--display")})
         if (is_given) return user_error(fmt::format("{}: works for files only, not for --format {}", flag, *format_));
-    if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
+    if (has_alpha() && desc.format != darkroom::VideoFormat::Rgba64le)
         return user_error(fmt::format("--alpha: --format {} holds no alpha; rgba64le does", *format_));
     if (isatty(STDOUT_FILENO) != 0) return user_error("-o -: standard output is a terminal, which shows no pictures");
     return desc;

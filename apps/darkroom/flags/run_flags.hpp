@@ -46,9 +46,10 @@ class WriteFlags {
   private:
     std::optional<std::string> bits_, format_;
     SpaceFlags space_;
-    std::string compression_;
+    [[nodiscard]] bool has_alpha() const { return !alpha_.empty() && alpha_ != "false"; }
+
+    std::string alpha_, chroma_, compression_;
     NumberFlag quality_{"--quality", {.least = 1, .most = 100, .is_whole = true}};
-    bool has_alpha_ = false;
 };
 
 inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at once

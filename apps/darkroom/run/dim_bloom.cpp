@@ -46,6 +46,7 @@ void tell(darkroom::Device& device, const darkroom::Composer& composer, const da
     for (std::size_t i = stack.entries().size(); i > (reads_scene ? 0 : *place); --i)
         if (!before.remove(stack.entries()[i - 1].copy)) return;
     desc.target = darkroom::DevelopTarget::SceneLinear;
+    desc.color.reset();
     desc.frames_in_flight = 1;
     darkroom::Developer developer(device, desc);
     // A wire from the frame before may lead to what was cut off; nothing is said of such stacks.

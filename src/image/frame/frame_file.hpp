@@ -112,15 +112,15 @@ struct HalfLayers {
 
 struct FrameFile {
     /// Scene-linear Rec. 709. As large as the display window; pixels outside the data window are 0, alpha included.
-    /// Alpha is carried as the file has it: straight, but multiplied into the colour in OpenEXR.
     Picture color;
     /// Where overscan was kept: the display window, in pixels of this picture.
     std::optional<PixelWindow> display;
-    bool has_alpha = false;                ///< false: alpha is 1 wherever there are data
-    std::optional<Plane<1>> depth;         ///< distance along the view axis; sky_depth where there is no surface
-    std::optional<Plane<3>> normals;       ///< world space; 0 where there is no surface
-    std::optional<Plane<2>> velocity;      ///< previous minus current position, pixels, y down
-    std::optional<Plane<1>> reactive;      ///< 0 .. 1: how little earlier frames tell of a pixel
+    bool has_alpha = false;            ///< false: alpha is 1 wherever there are data
+    bool is_associated = false;        ///< the colour is multiplied by alpha, as the file has it; else it is straight
+    std::optional<Plane<1>> depth;     ///< distance along the view axis; sky_depth where there is no surface
+    std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
+    std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
+    std::optional<Plane<1>> reactive;  ///< 0 .. 1: how little earlier frames tell of a pixel
     std::optional<Plane<3>> transparency;  ///< the colour before anything transparent was drawn
     FrameCamera camera;
     HalfLayers halves;  ///< see FrameOptions::keeps_halves

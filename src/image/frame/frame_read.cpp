@@ -15,6 +15,7 @@
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
+#include "image/picture/alpha.hpp"
 #include "image/picture/finite.hpp"
 
 namespace darkroom {
@@ -48,7 +49,7 @@ class FrameReader {
     void finish_masks();
     Result<> read_camera_of_file();
     void read_time_of_file();
-    [[nodiscard]] bool is_integer() const;
+    [[nodiscard]] bool is_integer() const { return darkroom::is_integer(frame_.samples); }
     [[nodiscard]] ColorCoding coding_of_color();
     void find_conversion();
     [[nodiscard]] bool are_halves(const ChannelSet& set, std::uint32_t components) const;
@@ -106,10 +107,6 @@ void FrameReader::add_half_place(const ChannelSet& set, std::uint32_t components
                        .components = components,
                        .kind = SampleKind::Half,
                        .plane = reinterpret_cast<std::byte*>(plane.data())});
-}
-
-bool FrameReader::is_integer() const {
-    return frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16;
 }
 
 // What is asked for goes before what the file says, and that before what is usual.
@@ -189,6 +186,7 @@ Result<> FrameReader::make_color() {
     if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
     frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
     frame_.has_alpha = found_.color.channels[3] >= 0;
+    frame_.is_associated = frame_.has_alpha && source.is_associated && !is_integer();
     find_conversion();
     const auto fill_alpha = [&](auto& values, auto one) {
         for (std::size_t i = 0; i < pixels; ++i)
@@ -214,6 +212,7 @@ void FrameReader::finish_color() {
         return;
     }
     make_finite(frame_.color, frame_.counts);
+    if (frame_.has_alpha && part(found_.color).is_associated && is_integer()) make_straight(frame_.color.pixels);
     if (options_.input_chain)
         apply(*options_.input_chain, frame_.color);
     else

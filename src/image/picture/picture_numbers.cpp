@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text/param_text.hpp"
+#include "image/picture/alpha.hpp"
 #include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
@@ -33,6 +34,8 @@ Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(c
     if (Result<> done = opened->source->read_rows(0, 0, part.height, places); !done) return failure(std::move(done));
     for (float& value : image.rgba)
         if (!std::isfinite(value)) value = 0;
+    const bool is_light = part.kinds[0] == SampleKind::Half || part.kinds[0] == SampleKind::Float;
+    if (part.is_associated && !is_light) make_straight(image.rgba);
     return image;
 }
 

@@ -112,8 +112,6 @@ Result<> check_coding(const std::filesystem::path& path, FileKind kind, const Wr
                                   known.empty() ? "none can be chosen" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
-bool is_integer(SampleKind samples) { return samples == SampleKind::Integer8 || samples == SampleKind::Integer16; }
-
 Result<> check_space(const std::filesystem::path& path, FileKind kind, SampleKind samples,
                      const WriteOptions& options) {
     if (!options.space) return {};
