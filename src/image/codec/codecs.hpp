@@ -22,6 +22,8 @@ struct EncodeDesc {
     SampleKind kind = SampleKind::Integer8;
     std::uint32_t width = 0, height = 0, channels = 3;
     std::optional<int> quality;  ///< JPEG, 1 to 100
+    std::string chroma;          ///< JPEG: 4:4:4, 4:2:2 or 4:2:0; empty: by the quality
+    bool is_associated = false;  ///< colours were multiplied by alpha, and the file says so
     std::string compression;     ///< TIFF: none, lzw, zip, packbits; empty: zip
     const void* samples = nullptr;
 };

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string_view>
 
 #include "image/codec/jpeg_check.hpp"
 #include "image/exr/check.hpp"
@@ -32,6 +33,7 @@ enum Tag : std::uint32_t {
     tile_length = 323,
     tile_offsets = 324,
     tile_byte_counts = 325,
+    sample_format = 339,
     ycbcr_subsampling = 530,
     icc_profile = 34675,
 };
@@ -194,7 +196,29 @@ class TiffChecker {
         const Entry* const bits = find(bits_per_sample);
         for (std::uint64_t i = 1; bits != nullptr && i < std::min(samples_, bits->count); ++i)
             if (value(*bits, i) != bits_) return malformed("samples of different numbers of bits");
+        if (Result<> done = check_format(); !done) return done;
         return check_palette();
+    }
+
+    /// Decoders take what they do not know for something else: floats of 24 bits for whole numbers, 6 bits for 8.
+    Result<> check_format() const {
+        constexpr std::array<std::string_view, 6> names{
+            "whole numbers",      "signed whole numbers",  "floats",
+            "numbers of no kind", "complex whole numbers", "complex floats"};
+        const Entry* const entry = find(sample_format);
+        const std::uint64_t format = entry == nullptr || !is_whole(*entry) ? 1 : value(*entry, 0);
+        for (std::uint64_t i = 1; entry != nullptr && i < std::min(samples_, entry->count); ++i)
+            if (value(*entry, i) != format) return malformed("samples of different kinds");
+        constexpr std::array<std::uint64_t, 8> whole{1, 2, 4, 8, 10, 12, 14, 16};
+        const Entry* const meaning = find(photometric);
+        const bool is_negative = meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) == 0;
+        const bool is_known_whole = std::ranges::count(whole, bits_) > 0 && !(is_negative && bits_ > 8 && bits_ < 16);
+        if (format == 3 ? bits_ == 16 || bits_ == 32 : format == 1 ? is_known_whole : format == 4 && bits_ == 8)
+            return {};
+        return user_error(fmt::format(
+            "{} of {} bits{}; whole numbers of 1, 2, 4, 8, 10, 12, 14 or 16 bits and floats of 16 or 32 are read",
+            format >= 1 && format <= names.size() ? names[format - 1] : "samples of an unknown kind", bits_,
+            is_negative ? ", of which 0 is white" : ""));
     }
 
     Result<> check_palette() const {

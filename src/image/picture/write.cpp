@@ -105,6 +105,12 @@ Result<> check_coding(const std::filesystem::path& path, FileKind kind, const Wr
     if (options.quality && (*options.quality < 1 || *options.quality > 100))
         return user_error(
             fmt::format("{}: a JPEG quality of {}; [1, 100] is allowed", path.string(), *options.quality));
+    if (!options.chroma.empty() && kind != FileKind::Jpeg)
+        return user_error(fmt::format("{}: {} has no chroma of its own; .jpg has", path.string(), name_of(kind)));
+    constexpr std::array<std::string_view, 3> chromas{"4:4:4", "4:2:2", "4:2:0"};
+    if (!options.chroma.empty() && std::ranges::find(chromas, options.chroma) == chromas.end())
+        return user_error(fmt::format("{}: chroma {} in JPEG; allowed: {}", path.string(),
+                                      one_printable_line(options.chroma), fmt::join(chromas, ", ")));
     const std::span<const std::string_view> known = format_of(kind).compressions;
     if (options.compression.empty() || std::ranges::find(known, options.compression) != known.end()) return {};
     return user_error(fmt::format("{}: compression {} in {}; allowed: {}", path.string(),
@@ -284,6 +290,8 @@ Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t wid
                       .height = height,
                       .channels = options.alpha ? 4U : 3U,
                       .quality = options.quality,
+                      .chroma = options.chroma,
+                      .is_associated = options.alpha && !is_integer(*samples),
                       .compression = options.compression};
 }
 

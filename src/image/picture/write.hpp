@@ -24,8 +24,12 @@ struct WriteOptions {
     /// Not given: 8-bit for PNG, JPEG and TIFF, 16-bit where another space than sRGB is, half for OpenEXR, float for
     /// Radiance HDR.
     std::optional<SampleKind> samples;
-    bool alpha = false;          ///< false: the file has no alpha channel, which is opaque everywhere
-    std::optional<int> quality;  ///< JPEG: 1 to 100, not given: 95
+    /// False: the file has no alpha channel, which is opaque everywhere. Colours of floats are given multiplied by it,
+    /// and OpenEXR and TIFF say so; those of integers are not, as PNG wants it.
+    bool alpha = false;
+    bool has_alpha_of_glow = false;  ///< see make_alpha_of_glow; what is written has it already
+    std::optional<int> quality;      ///< JPEG: 1 to 100, not given: 95
+    std::string chroma;              ///< JPEG: see EncodeDesc
     /// PNG: a level, 0 to 12; TIFF: none, packbits, lzw, zip; OpenEXR: none, rle, zips, zip, piz, pxr24, b44, b44a,
     /// dwaa, dwab. Empty: PNG fast, the others zip.
     std::string compression;
