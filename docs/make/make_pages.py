@@ -271,6 +271,8 @@ def main():
     wrong = [f"{name}: is not what the tree says: run docs/make/make_pages.py" for name in stale] + dead_links()
     if readme_table(effects) not in made["README.md"]:
         wrong.append("README.md: has no table of effects")
+    wrong += [f"{picture.relative_to(tree)}: names the command that made it, and its folders"
+              for picture in tree.glob("docs/pictures/**/*.jpg") if b"oiiotool" in picture.read_bytes()]
     for line in wrong:
         print(line)
     sys.exit(1 if wrong else 0)

@@ -348,8 +348,9 @@ class Maker:
         whole.unlink()
 
     def jpeg(self, out, *arguments):
-        self.run("oiiotool", *arguments, "-d", "uint8", "--attrib", "jpeg:subsampling", "4:4:4", "--compression", "jpeg:85",
-                 "-o", out)
+        # It would write down its command, and with it the folders of this machine.
+        self.run("oiiotool", "--nosoftwareattrib", *arguments, "--eraseattrib", ".*", "-d", "uint8", "--attrib",
+                 "jpeg:subsampling", "4:4:4", "--compression", "jpeg:85", "-o", out)
 
     def ssao_truth(self, place):
         """Of rays that a test traces."""
