@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a console's commands do. Every run has a budget: files may hold anything, and may run each other.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

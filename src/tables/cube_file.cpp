@@ -2,6 +2,7 @@
 #include "tables/cube_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>

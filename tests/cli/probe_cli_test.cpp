@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `darkroom probe`: its codes are those of the file that develop writes, and what is not finite has a birthplace.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

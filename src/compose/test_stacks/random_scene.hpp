@@ -5,6 +5,7 @@
 // the library.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <limits>
 #include <optional>

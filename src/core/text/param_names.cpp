@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The names of parameters: keys, flags, suggestions, and text that is fit to be printed.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>

@@ -2,6 +2,7 @@
 #include "core/text/param_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>

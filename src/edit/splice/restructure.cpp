@@ -2,6 +2,7 @@
 #include "edit/splice/restructure.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>

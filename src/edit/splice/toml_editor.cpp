@@ -2,6 +2,7 @@
 #include "edit/splice/toml_editor.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>

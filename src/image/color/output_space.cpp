@@ -2,6 +2,7 @@
 #include "image/color/output_space.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>

@@ -2,6 +2,7 @@
 #include "looks/apply/look_resources.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -2,6 +2,7 @@
 #include "scene/read/prefab_expand.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>

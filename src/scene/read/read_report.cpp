@@ -2,6 +2,7 @@
 #include "scene/read/read_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

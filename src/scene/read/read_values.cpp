@@ -2,6 +2,7 @@
 #include "scene/read/read_values.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every key of a scene with values of every wrong kind: one problem each, at the place of the value.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
