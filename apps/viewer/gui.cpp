@@ -7,6 +7,7 @@
 #include "gpu/device/context.hpp"
 #include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/theme.hpp"
+#include "window/texture_address.hpp"
 
 namespace app {
 
@@ -64,7 +65,7 @@ Result<> Gui::begin(float scale) {
 }
 
 std::vector<VkRect2D> Gui::parts_of(const darkroom::window::PresentFrame& frame, const ImDrawData& lists) {
-    changed_.push_back({frame.number, damage_.take(lists, ImGui::GetIO().Fonts->TexID)});
+    changed_.push_back({frame.number, damage_.take(lists, darkroom::window::address_of(ImGui::GetIO().Fonts->TexID))});
     if (changed_.size() > most_changed) changed_.pop_front();
     // One that was begun and not drawn leaves a gap.
     if (frame.age == 0 || frame.age > changed_.size() ||

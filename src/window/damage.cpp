@@ -10,6 +10,8 @@
 #include <limits>
 #include <utility>
 
+#include "window/texture_address.hpp"
+
 namespace darkroom::window {
 
 namespace {
@@ -169,9 +171,10 @@ std::vector<VkRect2D> Damage::take(const ImDrawData& data, const void* fonts) {
         }
         for (std::size_t i = 0; i < list.commands.size(); ++i) {
             const ImDrawCmd &command = list.commands[i], &other = was->commands[i];
-            const bool is_pane = command.TextureId != nullptr && command.TextureId != fonts;
+            const void* const texture = address_of(command);
+            const bool is_pane = texture != nullptr && texture != fonts;
             const bool is_alike = std::memcmp(&command.ClipRect, &other.ClipRect, sizeof(ImVec4)) == 0 &&
-                                  command.TextureId == other.TextureId && command.UserCallback == other.UserCallback;
+                                  texture == address_of(other) && command.UserCallback == other.UserCallback;
             if (is_alike && !is_pane && command.UserCallback == nullptr) {
                 list.add_changes(command, *was, other, add);
                 continue;

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "window/test_gui_pass.hpp"
+#include "window/texture_address.hpp"
 
 namespace darkroom::window {
 namespace {
@@ -28,7 +29,7 @@ TEST(WindowDamage, IsWhatHasChanged) {
             list.AddText({200, 200}, IM_COL32_WHITE, "what stands");
             if (has_more) ImGui::GetForegroundDrawList()->AddRectFilled({300, 20}, {320, 40}, IM_COL32_WHITE);
         });
-        return damage.take(data, ImGui::GetIO().Fonts->TexID);
+        return damage.take(data, address_of(ImGui::GetIO().Fonts->TexID));
     };
     std::vector<VkRect2D> parts = taken(50);
     ASSERT_EQ(parts.size(), 1U) << "all of it at first";
@@ -133,7 +134,7 @@ TEST_F(WindowGpuDamage, PartsOverTheFrameBeforeAreTheWholeFrame) {
                 }
             }
         });
-        const std::vector<VkRect2D> parts = damage.take(data, ImGui::GetIO().Fonts->TexID);
+        const std::vector<VkRect2D> parts = damage.take(data, address_of(ImGui::GetIO().Fonts->TexID));
         for (const VkRect2D& part : parts) drawn += std::size_t{part.extent.width} * part.extent.height;
         const Pixels by_parts = draw_parts(data, parts);
         const Pixels whole = draw(data);

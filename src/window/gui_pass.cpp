@@ -18,6 +18,7 @@
 #include "gpu/resource/formats.hpp"
 #include "gpu/resource/resources.hpp"
 #include "window/gui_shaders.hpp"
+#include "window/texture_address.hpp"
 
 namespace darkroom::window {
 
@@ -252,7 +253,7 @@ Result<> GuiPass::upload_fonts(ImFontAtlas& atlas) {
     if (!done) return done;
     // The wait was for everything before it on the queue, so that no frame reads the old one any more.
     state_->font = std::move(*image);
-    state_->font_texture = atlas.TexID;
+    state_->font_texture = address_of(atlas.TexID);
     const VkDescriptorImageInfo font{context.linear_sampler, state_->font.view,
                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     write_set(context, state_->font_set.sets[0], {font, font});
@@ -308,7 +309,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
                               const VkRect2D& part) const {
     const VkRect2D scissor = scissor_of(command, data, part);
     if (scissor.extent.width == 0 || scissor.extent.height == 0) return {};
-    void* const texture = command.GetTexID();
+    void* const texture = address_of(command);
     const bool is_font = texture == nullptr || texture == font_texture;
     VkDescriptorSet set = font_set.sets[0];
     const gpu::Pipeline* pipeline = &lists;
