@@ -80,7 +80,7 @@ TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
     EXPECT_EQ(record("0-0")["made"], 1);
 }
 
-// Slurm sends the task a signal, and not what it has started.
+// Slurm sends the task a signal, and not what it has started; nobody can pass SIGKILL on.
 TEST_F(CliFarm, WhatATaskHasStartedEndsWithIt) {
     FrameFile large;
     large.color = Picture(1500, 1500);
@@ -89,16 +89,22 @@ TEST_F(CliFarm, WhatATaskHasStartedEndsWithIt) {
         fs::remove(path(in(number)));
         fs::create_symlink(in(0), path(in(number)));
     }
-    const Outcome outcome = run_lines(
-        "set +e\ndarkroom farm task 'shot.####.exr' -o out/ --frames 0-59 -q &\ntask=$!\n"
-        "for i in $(seq 200); do test -e out/shot.0001.png && break; sleep 0.1; done\n"
-        "child=$(grep -ls \"^PPid:[[:space:]]*$task$\" /proc/[0-9]*/status | cut -d/ -f3 | head -n 1)\ntest -n "
-        "\"$child\" || echo no child\n"
-        "kill -TERM $task\nwait $task\n"
-        "for i in $(seq 600); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
-        "kill -0 $child 2>/dev/null && echo is running\nexit 0");
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_FALSE(fs::exists(path(out("out", 59))));
+    for (const std::string signal : {"TERM", "KILL"}) {
+        fs::remove_all(path("out"));
+        fs::create_directory(path("out"));
+        const Outcome outcome = run_lines(
+            "set +e\ndarkroom farm task 'shot.####.exr' -o out/ --frames 0-59 -q &\ntask=$!\n"
+            "for i in $(seq 200); do test -e out/shot.0001.png && break; sleep 0.1; done\n"
+            "child=$(grep -ls \"^PPid:[[:space:]]*$task$\" /proc/[0-9]*/status | cut -d/ -f3 | head -n 1)\ntest -n "
+            "\"$child\" || echo no child\n"
+            "kill -" +
+            signal +
+            " $task\nwait $task\n"
+            "for i in $(seq 600); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
+            "kill -0 $child 2>/dev/null && echo is running\nexit 0");
+        EXPECT_EQ(outcome.out, "") << signal;
+        EXPECT_FALSE(fs::exists(path(out("out", 59)))) << signal;
+    }
 }
 
 TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
@@ -111,7 +117,8 @@ TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
     EXPECT_EQ(record("0-2")["done"], json::parse("[[0,0],[2,2]]"));
     const std::string told = run_lines("darkroom farm status out").out;
     EXPECT_TRUE(told.starts_with("out/shot.farm: 3 frames: 2 done, 1 failed, 0 missing\n  failed: 1 on ")) << told;
-    EXPECT_NE(told.find(", 4 tries: darkroom: shot.0001.exr: is not a picture of a known format"), std::string::npos) << told;
+    EXPECT_NE(told.find(", 4 tries: darkroom: shot.0001.exr: is not a picture of a known format"), std::string::npos)
+        << told;
     write(in(1), good);
     write(out("out", 0), "there");
     EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0-2").code, 0);

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/flags/run_program.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
@@ -99,6 +100,8 @@ class Task {
         std::vector<std::string> arguments{fs::read_symlink("/proc/self/exe", error).string()};
         for (std::string& argument : flags_.command(flags_.frames())) arguments.push_back(std::move(argument));
         if (current_voice() != Voice::Usual) arguments.emplace_back(current_voice() == Voice::Quiet ? "-q" : "-v");
+        // Where this process is killed, nobody sends a signal on: that one asks to get it.
+        ::setenv(task_of_farm, std::to_string(::getpid()).c_str(), 1);
         const Result<ProcessOutcome> outcome = run_process(arguments, ProcessOutput::Told);
         if (!outcome) return failure(outcome.error());
         record_.done = numbers_there(work_);

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "run_program.hpp"
 
+#include <sys/prctl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "apps/darkroom/effects/named_effects.hpp"
@@ -33,11 +39,20 @@ int run(int argc, char** argv, const AddCommands& add_commands) {
     return chosen->run();
 }
 
+/// Started by a task of a farm, this process ends when that one does, by whatever hand.
+void end_with_task() {
+    const char* const task = std::getenv(task_of_farm);
+    if (task == nullptr || std::to_string(::getppid()) != task) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (std::to_string(::getppid()) != task) std::raise(SIGTERM);
+}
+
 }  // namespace
 
 int run_program(int argc, char** argv, const AddCommands& add_commands) {
     darkroom::AtomicPath::remove_on_signals();
     survive_size_limits();
+    end_with_task();
     // Whoever reads objects reads of a wrong flag, too.
     for (int i = 1; i < argc; ++i) {
         const std::string_view word = argv[i];

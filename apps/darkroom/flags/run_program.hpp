@@ -15,6 +15,9 @@ namespace app {
 using AddCommands = std::function<std::vector<Command>(CommandFlags program, std::span<const darkroom::LookEntry> named,
                                                        std::string_view asked)>;
 
+/// In the environment of what a task of a farm starts: the task's number, with which it ends.
+inline constexpr const char* task_of_farm = "DARKROOM_TASK_OF_FARM";
+
 /// Runs what the arguments ask for. Returns the exit code; errors have been told.
 [[nodiscard]] int run_program(int argc, char** argv, const AddCommands& add_commands);
 
