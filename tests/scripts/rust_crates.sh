@@ -16,6 +16,6 @@ cd "$work/rust"
 quietly cargo test
 quietly cargo doc --no-deps
 # With the form of 1.90 that knows the two of one another.
-if cargo package --help | grep -q -e '--workspace'; then
+if cargo package --help | grep -q -e "--workspace"; then
     quietly cargo package --workspace
 fi
