@@ -48,7 +48,7 @@ refuse_old_packages() {
 # to answer; another user without one gets the command to run.
 install_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-        say "no apt-get here; if the build fails, these packages (names of Debian 12) are needed:" $(wanted_packages)
+        say "no apt-get here; if the build fails, these packages (names of Debian) are needed:" $(wanted_packages)
         return
     fi
     local missing as_root=()
@@ -158,7 +158,7 @@ build() {
     : >"$log"
     install_packages
     install_optional_packages
-    command -v cmake >/dev/null || die "cmake not found; needed packages (names of Debian 12): $(wanted_packages | xargs)"
+    command -v cmake >/dev/null || die "cmake not found; needed packages (names of Debian): $(wanted_packages | xargs)"
 
     # A folder that was configured for a tree elsewhere (moved, copied) starts anew.
     if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then

@@ -115,7 +115,14 @@ if apt-cache show bash >/dev/null 2>&1; then
     while IFS= read -r package; do
         named=$((named + 1))
         apt-cache show "$package" >/dev/null 2>&1 || fail "pages name the package $package, which Debian does not have"
-    done < <(lines_of sh $(cd "$tree" && echo README.md docs/*.md) | sed -nE 's/^sudo apt-get install //p' | tr ' ' '\n' | sort -u)
+    done < <({
+        lines_of sh $(cd "$tree" && echo README.md docs/*.md) | sed -nE 's/^sudo apt-get install //p'
+        # And of the packages at run time the column of the release that this is.
+        release=$(. /etc/os-release && echo "On Debian ${VERSION_ID:-}")
+        awk -F ' *[|] *' -v release="$release" '$2 == "For" { for (i = 3; i < NF; ++i) if ($i == release) column = i; next }
+            /^[|]/ && column { print $column } !/^[|]/ { column = 0 }' "$tree/docs/install.md" |
+            grep -oE '`[^`]+`' | tr -d '`' | tr ' ' '\n' | grep -vE '[.:][a-z:]' || true
+    } | tr ' ' '\n' | sort -u)
 fi
 lines_of sh docs/python.md | grep -q -- "$(grep -oE 'pip wheel( -q)? --no-build-isolation --no-deps' "$tree/tests/scripts/python.sh" | sed 's/ -q//')" ||
     fail "docs/python.md makes its wheel otherwise than tests/scripts/python.sh"
