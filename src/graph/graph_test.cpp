@@ -282,6 +282,33 @@ TEST(GraphCheck, FindsImagesThatShareMemoryWhileBothLive) {
     EXPECT_EQ(result.error().text, "pass 'a' uses 'x' in layout 1, but it is in 0");
 }
 
+// Of an import that no pass uses.
+TEST(GraphSchedule, AnUnusedImageIsLeftAsTheHostAsks) {
+    constexpr VkImageLayout general = VK_IMAGE_LAYOUT_GENERAL, sampled = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                            undefined = VK_IMAGE_LAYOUT_UNDEFINED;
+    constexpr VkPipelineStageFlags2 clear = VK_PIPELINE_STAGE_2_CLEAR_BIT, copy = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                    no_stage = VK_PIPELINE_STAGE_2_NONE;
+    constexpr VkAccessFlags2 writes = VK_ACCESS_2_TRANSFER_WRITE_BIT, reads = VK_ACCESS_2_TRANSFER_READ_BIT;
+    const auto barriers_of = [&](const ImportState& host) {
+        Graph graph;
+        (void)host_image(graph, "color");
+        const auto compiled = graph.compile(full_hd, measure);
+        EXPECT_TRUE(compiled);
+        Schedule schedule(*compiled);
+        schedule.derive({}, {&host, 1}, 0);
+        EXPECT_TRUE(check(*compiled, schedule, {&host, 1}));
+        return schedule.final_barriers().size();
+    };
+    EXPECT_EQ(barriers_of({general, clear, writes, general, copy, reads}), 1u);
+    EXPECT_EQ(barriers_of({general, clear, writes, undefined, copy, reads}), 1u);
+    EXPECT_EQ(barriers_of({general, copy, reads, sampled, copy, reads}), 1u);
+    EXPECT_EQ(barriers_of({general, copy, reads, general, copy, reads}), 0u) << "two reads wait for nothing";
+    EXPECT_EQ(barriers_of({general, copy, reads, general, clear, writes}), 1u);
+    EXPECT_EQ(barriers_of({general, no_stage, 0, general, no_stage, 0}), 0u) << "the host does it";
+    EXPECT_EQ(barriers_of({general, no_stage, 0, sampled, no_stage, 0}), 1u);
+    EXPECT_EQ(barriers_of({undefined, clear, writes, undefined, copy, reads}), 0u) << "it holds nothing";
+}
+
 TEST(GraphCheck, FindsAPassThatDidNotRun) {
     Graph graph;
     const Version a = graph.add({.name = "a", .writes = {{graph.create(image("x")), Use::StorageWrite}}})[0];

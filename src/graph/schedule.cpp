@@ -119,6 +119,22 @@ ImportState state_of(const Slot& slot, std::span<const ImportState> imports) {
 
 }  // namespace
 
+std::optional<Barrier> barrier_of_unused(const ImportState& host) {
+    const bool stays = host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED || host.final_layout == host.layout;
+    // Texels that nobody wrote since wait for nobody who only reads them.
+    const bool is_waited_for = host.stages != VK_PIPELINE_STAGE_2_NONE &&
+                               host.final_stages != VK_PIPELINE_STAGE_2_NONE &&
+                               ((host.access | host.final_access) & all_writes) != 0;
+    if (host.layout == VK_IMAGE_LAYOUT_UNDEFINED ? stays : stays && !is_waited_for) return std::nullopt;
+    return Barrier{.source_stages = host.stages,
+                   .target_stages = host.final_stages,
+                   .source_access = host.access & all_writes,
+                   .target_access = host.final_access,
+                   .old_layout = host.layout,
+                   .new_layout = stays ? host.layout : host.final_layout,
+                   .is_depth_alone = is_of_depth_alone(host.layout) || is_of_depth_alone(host.final_layout)};
+}
+
 struct Schedule::State {
     const Solution* solution = nullptr;
     std::vector<std::uint8_t> gates;
@@ -402,30 +418,30 @@ void Schedule::State::add_round(std::uint32_t first, std::uint32_t last) {
 void Schedule::State::finish(std::span<const ImportState> imports) {
     for (std::uint32_t index = 0; index < solution->slots.size(); ++index) {
         const Slot& slot = solution->slots[index];
-        Barrier barrier{.slot = index,
-                        .target_stages = solution->past[index].stages,
-                        .target_access = solution->past[index].access & ~all_writes,
-                        .new_layout = slot.rest_layout,
-                        .is_depth_alone = is_depth_alone[index] != 0};
-        if (slot.kind == Slot::Kind::Import) {
-            const ImportState host = state_of(slot, imports);
-            barrier.target_stages = host.final_stages;
-            barrier.target_access = host.final_access;
-            barrier.new_layout = host.final_layout;
-        } else if (slot.kind != Slot::Kind::History && slot.kind != Slot::Kind::Lasting) {
-            continue;
-        }
-        if (barrier.new_layout == VK_IMAGE_LAYOUT_UNDEFINED && !slot.desc.is_buffer()) continue;
+        const bool is_import = slot.kind == Slot::Kind::Import;
+        if (!is_import && slot.kind != Slot::Kind::History && slot.kind != Slot::Kind::Lasting) continue;
+        const ImportState host = is_import ? state_of(slot, imports) : ImportState{};
         for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level) {
             const MipState& state = mips[solution->first_mip[index] + level];
-            const bool is_elsewhere = state.layout != barrier.new_layout;
-            const bool is_unseen = (solution->past[index].reads & ~state.seen_by) != 0;
-            const bool is_waited_for = state.is_touched && barrier.target_stages != VK_PIPELINE_STAGE_2_NONE;
-            const bool is_needed = slot.kind == Slot::Kind::Import ? is_waited_for || is_elsewhere
-                                                                   : state.is_touched && (is_elsewhere || is_unseen);
-            if (!is_needed) continue;
-            barrier.mips = {level, 1};
+            Barrier barrier{.slot = index, .mips = {level, 1}, .is_depth_alone = is_depth_alone[index] != 0};
+            if (is_import && !state.is_touched) {
+                if (const auto left = barrier_of_unused(host)) {
+                    barrier = *left;
+                    barrier.slot = index;
+                    barrier.mips = {level, 1};
+                    append(final_barriers, 0, barrier);
+                }
+                continue;
+            }
+            if (!state.is_touched) continue;
             barrier.old_layout = state.layout;
+            barrier.new_layout = is_import ? host.final_layout : slot.rest_layout;
+            if (is_import && host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) barrier.new_layout = state.layout;
+            barrier.target_stages = is_import ? host.final_stages : solution->past[index].stages;
+            barrier.target_access = is_import ? host.final_access : solution->past[index].access & ~all_writes;
+            const bool is_waited_for = is_import ? host.final_stages != VK_PIPELINE_STAGE_2_NONE
+                                                 : (solution->past[index].reads & ~state.seen_by) != 0;
+            if (!is_waited_for && barrier.old_layout == barrier.new_layout) continue;
             wait_for_all(state, barrier);
             append(final_barriers, 0, barrier);
         }

@@ -3,6 +3,8 @@
 // One frame of a compiled graph: which passes run, and every barrier. Of Schedule's steps record the barriers, then the
 // pass; then the final barriers.
 
+#include <optional>
+
 #include "graph/graph.hpp"
 
 namespace darkroom::graph {
@@ -14,7 +16,7 @@ struct ImportState {
     VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT;
     VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< UNDEFINED: leave it where it is
-    /// NONE: the host waits for Slot::uses itself.
+    /// For these it is made ready whether a pass uses it or not. NONE: the host waits for Slot::uses itself.
     VkPipelineStageFlags2 final_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 };
@@ -28,6 +30,9 @@ struct Barrier {
     /// The host keeps the layouts of depth and stencil apart: the stencil, if there is one, stays as it is.
     bool is_depth_alone = false;
 };
+
+/// What leaves an image that no pass uses as its host asks; none: it is so already.
+[[nodiscard]] std::optional<Barrier> barrier_of_unused(const ImportState& host);
 
 struct Step {
     std::uint32_t pass = 0;  ///< index into Compiled::passes()

@@ -427,10 +427,14 @@ class Checker {
                 if (slot.kind == Slot::Kind::History || slot.kind == Slot::Kind::Lasting) {
                     if (auto result = check_rest(index, mip); !result) return result;
                 }
-                if (slot.kind != Slot::Kind::Import || host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
-                const bool is_untouched = std::all_of(level.events.begin(), level.events.end(),
-                                                      [](const Event& event) { return event.who == "the host"; });
-                if (is_untouched && level.layout == host.final_layout) continue;
+                const VkImageLayout wanted =
+                    host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED ? level.layout : host.final_layout;
+                if (slot.kind != Slot::Kind::Import || wanted == VK_IMAGE_LAYOUT_UNDEFINED) continue;
+                const bool is_read_alone = (access_set(host.final_access) & write_bits) == 0 &&
+                                           std::ranges::all_of(level.events, [](const Event& event) {
+                                               return event.who == "the host" && event.written == 0;
+                                           });
+                if (is_read_alone && level.layout == wanted) continue;
                 // The host may do anything after its stages, so they come after reads, too.
                 const StageSet final_stages = stage_set(host.final_stages);
                 for (const Event& event : level.events) {
@@ -438,8 +442,8 @@ class Checker {
                     return user_error(fmt::format("after the frame, the host does not wait for what {} did to {}",
                                                   event.who, place(index, mip)));
                 }
-                if (auto result = access(index, mip, "after the frame, the host", host.final_stages, host.final_access,
-                                         host.final_layout);
+                if (auto result =
+                        access(index, mip, "after the frame, the host", host.final_stages, host.final_access, wanted);
                     !result) {
                     return result;
                 }

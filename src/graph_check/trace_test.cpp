@@ -151,7 +151,8 @@ TEST(GraphTrace, PassThatIsOffIsReplacedByItsInput) {
                                          .access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT}};
     EXPECT_EQ(trace_of(graph, std::array{false}, imports),
               "barrier color: fragment -> fragment:sample\n"
-              "pass show\n");
+              "pass show\n"
+              "final color: fragment:sample -> all:read|write\n");
     EXPECT_EQ(trace_of(graph, std::array{true}, imports),
               "barrier side: compute|color-output:color-write -> color-output:color-write, undefined -> color\n"
               "pass prepare\n"
@@ -160,7 +161,8 @@ TEST(GraphTrace, PassThatIsOffIsReplacedByItsInput) {
               "barrier blurred: compute|fragment:store -> compute:store, undefined -> general\n"
               "pass blur\n"
               "barrier blurred: compute:store -> fragment:sample, general -> read-only\n"
-              "pass show\n");
+              "pass show\n"
+              "final color: compute:sample -> all:read|write\n");
 }
 
 TEST(GraphTrace, BlendThatIsOffLeavesTheOlderContent) {
@@ -194,12 +196,14 @@ TEST(GraphTrace, HistoryChangesSlotsEveryFrame) {
               "barrier history#0: compute:store -> compute:store, undefined -> general\n"
               "pass accumulate\n"
               "barrier history#0: compute:store -> compute:sample, general -> read-only\n"
-              "pass show\n");
+              "pass show\n"
+              "final color: compute:sample -> all:read|write\n");
     EXPECT_EQ(trace_of(graph, {}, imports, 1),
               "barrier history#1: compute:store -> compute:store, undefined -> general\n"
               "pass accumulate\n"
               "barrier history#1: compute:store -> compute:sample, general -> read-only\n"
-              "pass show\n");
+              "pass show\n"
+              "final color: compute:sample -> all:read|write\n");
 }
 
 TEST(GraphTrace, HistoryWriterIsKeptByTheReaderOfThePreviousFrame) {
@@ -235,13 +239,14 @@ TEST(GraphTrace, HistoryMovesAfterTheReadersOfTheLastFrame) {
     EXPECT_TRUE(checked) << checked.error().text;
 }
 
-TEST(GraphTrace, UnusedImportStillGoesToItsFinalLayout) {
+TEST(GraphTrace, UnusedImportStillGoesToItsFinalLayoutStagesAndAccess) {
     Graph graph;
     host_image(graph, "moved");
     host_image(graph, "stays");
     const std::array imports{host_state(VK_IMAGE_LAYOUT_GENERAL), host_state(VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
     EXPECT_EQ(trace_of(graph, {}, imports),
-              "final moved: color-output:color-write -> fragment:sample, general -> read-only\n");
+              "final moved: color-output:color-write -> fragment:sample, general -> read-only\n"
+              "final stays: color-output:color-write -> fragment:sample\n");
 }
 
 TEST(GraphTrace, DepthIsSampledWhereTheHostHasIt) {
@@ -259,7 +264,8 @@ TEST(GraphTrace, DepthIsSampledWhereTheHostHasIt) {
         EXPECT_EQ(trace_of(graph, {}, imports),
                   "barrier depth: depth-tests:depth-write -> compute|fragment:sample\n"
                   "pass fog\n"
-                  "pass show\n");
+                  "pass show\n"
+                  "final depth: compute|fragment:sample -> all:read|write\n");
         imports[0].final_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
         const auto compiled = graph.compile(full_hd, measure);
         ASSERT_TRUE(compiled);
@@ -277,7 +283,8 @@ TEST(GraphTrace, DepthMovesFromWhereItCannotBeSampled) {
     graph.add({.name = "fog", .reads = {{depth_image(graph), Use::SampledCompute}}, .has_side_effect = true});
     EXPECT_EQ(trace_of(graph, {}, std::array{depth_state(VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)}),
               "barrier depth: depth-tests:depth-write -> compute:sample, depth -> read-only\n"
-              "pass fog\n");
+              "pass fog\n"
+              "final depth: compute:sample -> all:read|write\n");
 }
 
 TEST(GraphTrace, ImageThatIsAlsoLoadedOrWrittenMoves) {
@@ -312,7 +319,8 @@ TEST(GraphTrace, ImageInGeneralIsLoadedAndSampledThere) {
     graph.add({.name = "load", .reads = {{color, Use::StorageRead}}, .has_side_effect = true});
     EXPECT_EQ(trace_of(graph, {}, std::array{ImportState{.layout = VK_IMAGE_LAYOUT_GENERAL, .stages = 0, .access = 0}}),
               "pass sample\n"
-              "pass load\n");
+              "pass load\n"
+              "final color: compute:sample|load -> all:read|write\n");
 }
 
 TEST(GraphTrace, StencilStaysWhereTheHostKeepsItApart) {

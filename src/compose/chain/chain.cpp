@@ -10,6 +10,8 @@
 #include "compose/chain/camera_jump.hpp"
 #include "compose/chain/frame_check.hpp"
 #include "core/assert.hpp"
+#include "gpu/resource/formats.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom::compose {
 
@@ -18,6 +20,19 @@ using plan::HostImage;
 using plan::PassInput;
 using plan::ProgramPass;
 using plan::Shape;
+
+namespace {
+
+graph::ImportState state_of(const ImageRef& image) {
+    return {.layout = image.layout,
+            .stages = image.last_stages,
+            .access = image.last_access,
+            .final_layout = image.final_layout != VK_IMAGE_LAYOUT_UNDEFINED ? image.final_layout : image.layout,
+            .final_stages = image.final_stages,
+            .final_access = image.final_access};
+}
+
+}  // namespace
 
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
@@ -82,6 +97,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
         }
     }
     physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
+    leave_unused(commands, frame);
     physical_->end(*schedule_, frame.view);
     ++recordings_;
     ++program.recordings;
@@ -129,19 +145,47 @@ void Chain::lend_images(const Frame& frame) {
     for (std::size_t i = 0; i < program_of().imports.size(); ++i) {
         if (!program_of().imports[i]) continue;
         const ImageRef& image = image_of(frame, *program_of().imports[i]);
-        import_states_[i] = {
-            .layout = image.layout,
-            .stages = image.last_stages,
-            .access = image.last_access,
-            .final_layout = image.final_layout != VK_IMAGE_LAYOUT_UNDEFINED ? image.final_layout : image.layout,
-            .final_stages = image.final_stages,
-            .final_access = image.final_access};
+        import_states_[i] = state_of(image);
         physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
                                                         .view = image.view,
                                                         .base_mip_level = image.mip_level,
                                                         .base_array_layer = image.array_layer,
                                                         .array_layers = image.layer_count});
     }
+}
+
+/// Images that the frame brings and the plan does not know: left as the host asks for, too.
+void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
+    const auto is_used = [&](const ImageRef& image) {
+        return std::ranges::any_of(program_of().imports,
+                                   [&](const auto& which) { return which && overlap(image_of(frame, *which), image); });
+    };
+    const auto leave = [&](const ImageRef& image) {
+        if (image.image == VK_NULL_HANDLE || is_used(image)) return;
+        const auto barrier = graph::barrier_of_unused(state_of(image));
+        if (!barrier) return;
+        const VkImageMemoryBarrier2 one{
+            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+            .srcStageMask = barrier->source_stages,
+            .srcAccessMask = barrier->source_access,
+            .dstStageMask = barrier->target_stages,
+            .dstAccessMask = barrier->target_access,
+            .oldLayout = barrier->old_layout,
+            .newLayout = barrier->new_layout,
+            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .image = image.image,
+            .subresourceRange = {barrier->is_depth_alone ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                         : gpu::format_traits(image.format).aspects,
+                                 image.mip_level, 1, image.array_layer, image.layer_count}};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &one};
+        context_.vk.CmdPipelineBarrier2(commands, &dependency);
+    };
+    for (const plan::FrameInput& input : plan::frame_inputs)
+        if (input.given != nullptr) leave(frame.*input.given);
+    for (const Light& light : frame.lights) leave(light.cascades);
+    for (const Watched& watched : frame.watched) leave(watched.target);
 }
 
 void Chain::find_watched(const Frame& frame) {

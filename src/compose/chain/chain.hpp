@@ -67,6 +67,7 @@ class Chain final : public Garbage {
     [[nodiscard]] const ImageRef& image_of(const Frame& frame, plan::HostImage which) const;
     void write_frame_block(const Frame& frame);
     void lend_images(const Frame& frame);
+    void leave_unused(VkCommandBuffer commands, const Frame& frame) const;
     void find_watched(const Frame& frame);
     void note_watch_states();
     [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;

@@ -167,11 +167,6 @@ Result<> check_lights(const plan::Program& program, const Frame& frame, AllGiven
     return {};
 }
 
-bool overlap(const ImageRef& a, const ImageRef& b) {
-    return a.image == b.image && a.mip_level == b.mip_level && a.array_layer < b.array_layer + b.layer_count &&
-           b.array_layer < a.array_layer + a.layer_count;
-}
-
 /// Two inputs may be one image only where no barrier has to move it: each would start from the layout the host named.
 bool stays_readable(const Given& given, const CompileDesc& desc) {
     const ImageRef& image = *given.image;
@@ -281,6 +276,11 @@ Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
 }
 
 }  // namespace
+
+bool overlap(const ImageRef& a, const ImageRef& b) {
+    return a.image == b.image && a.mip_level == b.mip_level && a.array_layer < b.array_layer + b.layer_count &&
+           b.array_layer < a.array_layer + a.layer_count;
+}
 
 const ImageRef& host_image(const Frame& frame, HostImage which) {
     if (which.kind == Kind::Input) return frame.*plan::frame_inputs[which.number].given;

@@ -21,6 +21,9 @@ namespace darkroom::compose {
 /// An image of a frame, other than the cascades of a light.
 [[nodiscard]] const ImageRef& host_image(const Frame& frame, plan::HostImage which);
 
+/// Have they texels in common?
+[[nodiscard]] bool overlap(const ImageRef& a, const ImageRef& b);
+
 /// Which of CompileDesc::watches has this number; none.
 [[nodiscard]] std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id);
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A host with a render graph of its own: it places every barrier of its images by what the plan tells, and runs passes
 // of its own before, between and behind.
+#include <fmt/format.h>
+
 #include <map>
 
 #include "compose/test_stacks/host.hpp"
+#include "gpu/resource/formats.hpp"
 
 namespace darkroom {
 namespace {
@@ -14,6 +17,7 @@ using test::Host;
 /// Barriers of images by whoever calls the driver through the device's table.
 PFN_vkCmdPipelineBarrier2 put_barriers = nullptr;
 std::map<VkImage, int> barriers_of_library;
+std::map<VkImage, VkImageMemoryBarrier2> last_barrier;  ///< of the library
 
 /// Where an image is, and what was last done to it: the least that a render graph knows.
 struct GraphImage {
@@ -64,9 +68,12 @@ class ComposeToldUses : public test::StackTest {
         gpu::Dispatch& vk = gpu::test::device().context().vk;
         put_barriers = vk.CmdPipelineBarrier2;
         barriers_of_library.clear();
+        last_barrier.clear();
         vk.CmdPipelineBarrier2 = [](VkCommandBuffer commands, const VkDependencyInfo* all) {
-            for (const auto& barrier : std::span(all->pImageMemoryBarriers, all->imageMemoryBarrierCount))
+            for (const auto& barrier : std::span(all->pImageMemoryBarriers, all->imageMemoryBarrierCount)) {
                 ++barriers_of_library[barrier.image];
+                last_barrier[barrier.image] = barrier;
+            }
             put_barriers(commands, all);
         };
     }
@@ -111,6 +118,63 @@ TEST_F(ComposeToldUses, AHostThatPlacesItsBarriersGetsNoneOfOurs) {
                 EXPECT_EQ(test::worst_difference(host.read_target(), expected), 0);
             }
         }
+    }
+}
+
+// A host that goes on from final_layout, final_stages and final_access does so in every frame: of an image that is
+// read, that is not read now, that no effect reads, that the plan does not know, and of a target that came with no
+// content.
+TEST_F(ComposeToldUses, EveryImageIsLeftAsTheHostAsks) {
+    if (find_effect("motion_blur") == nullptr) GTEST_SKIP() << "this build has no effect motion_blur";
+    const Host host(test::random_display(16, 16, 3));
+    gpu::Context& context = host.device.context();
+    const std::array others{gpu::test::blank(context, {16, 16}, VK_FORMAT_R16G16_SFLOAT),
+                            gpu::test::blank(context, {16, 16}, VK_FORMAT_R32_SFLOAT),
+                            gpu::test::blank(context, {16, 16}, VK_FORMAT_R16G16B16A16_SFLOAT)};
+    Composer composer(host.device);
+    const Handle blur = add(composer, "motion_blur");
+    add(composer, "gaussian_blur");
+    CompileDesc desc = host.compile_desc();
+    desc.depth = {VK_FORMAT_R32_SFLOAT};
+    desc.velocity = {VK_FORMAT_R16G16_SFLOAT};
+    desc.reactive = {VK_FORMAT_R32_SFLOAT};
+    test::must(composer.compile(desc));
+    for (const bool is_on : {true, false}) {
+        test::must(composer.set_enabled(blur, is_on));
+        Frame frame = host.frame();
+        frame.camera.depth = DepthKind::Planar;
+        frame.velocity = test::image_ref(others[0]);
+        frame.depth = frame.reactive = test::image_ref(others[1]);
+        frame.reactive.image = VK_NULL_HANDLE;  // what was not given is left alone
+        frame.normals = test::image_ref(others[2]);
+        for (ImageRef* const image : {&frame.color, &frame.velocity, &frame.depth, &frame.normals, &frame.target}) {
+            image->last_stages = VK_PIPELINE_STAGE_2_CLEAR_BIT;
+            image->last_access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+            image->final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+            image->final_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+            image->final_access = VK_ACCESS_2_TRANSFER_READ_BIT;
+        }
+        frame.normals.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        frame.target.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        last_barrier.clear();
+        test::must(host.record(composer, frame));
+        for (const ImageRef& image : {frame.color, frame.velocity, frame.depth, frame.normals, frame.target}) {
+            SCOPED_TRACE(fmt::format("{}, motion blur is {}", gpu::format_name(image.format), is_on));
+            ASSERT_EQ(last_barrier.count(image.image), 1u);
+            const VkImageMemoryBarrier2& left = last_barrier.at(image.image);
+            EXPECT_EQ(left.dstStageMask, VK_PIPELINE_STAGE_2_COPY_BIT);
+            EXPECT_EQ(left.dstAccessMask, VK_ACCESS_2_TRANSFER_READ_BIT);
+            EXPECT_NE(left.newLayout, VK_IMAGE_LAYOUT_UNDEFINED);
+            const bool is_target = image.image == frame.target.image;
+            if (is_target) continue;
+            EXPECT_EQ(left.newLayout,
+                      image.image == frame.normals.image ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : image.layout);
+        }
+        EXPECT_EQ(last_barrier.count(VK_NULL_HANDLE), 0u);
+        // Back to where the test's picture has it.
+        test::must(gpu::submit_and_wait(context, "a host's frame", [&](VkCommandBuffer commands) {
+            gpu::transition(context, commands, others[2].image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, others[2].layout);
+        }));
     }
 }
 
