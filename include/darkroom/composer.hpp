@@ -163,7 +163,8 @@ class Composer {
     }
     Result<> replace(Handle handle, const EffectInfo& info, const void* parameters);
     /// Wires an entry anew: its inputs, mask, opacity (also one that set_opacity() refuses) and blend mode are those of
-    /// `desc`, and its output's name; an empty name keeps the entry's. Needs a compile.
+    /// `desc`, and its output's name; an empty name keeps the entry's. Needs a compile; the plan that runs until then
+    /// keeps its wires and goes on with the entry's values.
     Result<> rewire(Handle handle, const EntryDesc& desc);
     void clear();
 
@@ -211,7 +212,8 @@ class Composer {
     void drop_overrides(std::string_view owner);
     /// The values at the time and from the camera of the last record; empty: the handle names no entry.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
-    /// The same at any time and from any camera, and what layers make of the entry's `enabled` and `opacity`.
+    /// The same at any time and from any camera, and what layers make of the entry's `enabled` and `opacity`. An opacity
+    /// between 0 and 1 that the plan there is cannot show is 1 until the stack is compiled again.
     struct EntryValues {
         std::vector<std::uint32_t> words;
         bool is_enabled = true;
@@ -232,7 +234,8 @@ class Composer {
     /// Starts all pulses of this event anew at `time`, as Frame::time has it; by default with the next record. Returns
     /// how many there are. Allocates nothing.
     std::size_t fire(std::string_view event, std::optional<double> time = std::nullopt);
-    /// Errors: a name that another layer has, no values, one that is out of range, a distance that is none.
+    /// Errors: a name that another layer has, no values, one that is out of range, a distance that is none. One that
+    /// moves an opacity which set_opacity() would refuse shows it with the next compile; the device's log says so.
     Result<> add_layer(const LayerDesc& desc);
     /// Of a layer: from 0, where it changes nothing, to 1, where its values replace the base. Refused outside of that.
     Result<> set_layer_weight(std::string_view name, float weight);
@@ -243,10 +246,15 @@ class Composer {
     /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan
     /// stays alive until the recordings made with it have finished. Waits for a compile_later() that has begun.
     [[nodiscard]] Result<Plan> compile(const CompileDesc& desc);
-    /// The same on the Composer's own thread, from the stack as it is now. Returns at once; record() takes the new plan
-    /// when it is ready. A newer call replaces one that is not.
+    /// The same on the Composer's own thread, from the stack as it is now. Returns at once; the first record() behind
+    /// it whose frame has the formats and extents of `desc` takes the new plan, and until then frames of the old ones
+    /// go on. A newer call replaces one that is not taken.
     Result<> compile_later(const CompileDesc& desc);
     [[nodiscard]] PendingCompile pending() const;
+    /// The plan that the next record() takes; null: none is ready. For a host that places barriers by what plans tell:
+    /// from the first call on, record() takes no plan that the last call has not told of. Valid until the Composer
+    /// records or compiles again.
+    [[nodiscard]] const Plan* coming_plan();
     /// What record() works by; null: nothing yet. Valid until the Composer records or compiles again.
     [[nodiscard]] const Plan* current_plan() const;
     /// The same as compile() without a device's objects, so on Device::assumed(), too: for `darkroom plan`.

@@ -29,7 +29,8 @@ struct ValueReading {
 
 /// What became of compile_later().
 struct PendingCompile {
-    bool is_pending = false;     ///< under way, or ready for the next record to take
+    bool is_pending = false;     ///< under way, or ready
+    bool is_ready = false;       ///< the next record takes it, if its frame has the formats and extents that it is for
     std::optional<Error> error;  ///< why the last one failed; the plan before it goes on
 };
 

@@ -205,16 +205,17 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
     plan::Entry& old = **entry;
-    // A new entry under the old number: the present plan goes on with the old one.
+    if (old.info == &info) {
+        const void* const from = parameters != nullptr ? parameters : info.parameters.defaults.data();
+        std::memcpy(old.base.data(), from, old.base.size() * 4);
+        return {};
+    }
+    // The present plan goes on with the values of the other effect, switched and faded by the same handle.
     auto made = state_->make_entry(info, parameters, old.desc);
     made->id = old.id;
-    if (old.info == &info) {
-        made->overrides = old.overrides;
-        made->layers = old.layers;
-        made->pulses = old.pulses;
-        made->history_owner = old.history_owner;
-    }
-    state_->stack[state_->index_of(handle)] = std::move(made);
+    std::shared_ptr<plan::Entry>& place = state_->stack[state_->index_of(handle)];
+    made->replaced = place;
+    place = std::move(made);
     return {};
 } catch (...) {
     return caught("replace");
@@ -223,20 +224,11 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
 Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
-    // A new entry under the old number: the present plan goes on as it was wired.
-    auto made = std::make_shared<plan::Entry>(**entry);
-    EntryDesc& own = made->desc;
-    own.input = desc.input;
-    own.source = desc.source;
-    own.second = desc.second;
-    own.mask = desc.mask;
-    own.opacity = desc.opacity;
-    own.blend = desc.blend;
-    own.output = desc.output;
-    own.scale = desc.scale;
-    own.format = desc.format;
-    if (!desc.name.empty()) own.name = desc.name;
-    state_->stack[state_->index_of(handle)] = std::move(made);
+    EntryDesc own = desc;
+    own.is_ui = (*entry)->desc.is_ui;
+    own.enabled = (*entry)->desc.enabled;
+    if (own.name.empty()) own.name = (*entry)->desc.name;
+    std::swap((*entry)->desc, own);
     return {};
 } catch (...) {
     return caught("rewire");
@@ -298,7 +290,7 @@ std::span<const std::uint32_t> Composer::words(Handle handle) const {
 Result<> Composer::set_enabled(Handle handle, bool enabled) try {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
-    (*entry)->desc.enabled = enabled;
+    State::for_all_of(**entry, [&](plan::Entry& one) { one.desc.enabled = enabled; });
     return {};
 } catch (...) {
     return caught("set_enabled");
@@ -316,7 +308,7 @@ Result<> Composer::set_opacity(Handle handle, float opacity) try {
             "{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
             "or add it with an opacity below 1 and compile",
             entry.desc.name, opacity));
-    entry.desc.opacity = opacity;
+    State::for_all_of(entry, [&](plan::Entry& one) { one.desc.opacity = opacity; });
     return {};
 } catch (...) {
     return caught("set_opacity");

@@ -70,7 +70,6 @@ Composer::State::State(std::shared_ptr<gpu::Context> device_context, const Compo
 
 Composer::State::~State() {
     worker->stop();  // its task works on all of this
-    delete ready.exchange(nullptr);
     while (retired != nullptr) delete std::exchange(retired, retired->next_retired);
 }
 
@@ -128,6 +127,18 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
     return made;
 }
 
+void Composer::State::take_ready(const Frame& frame) {
+    std::unique_ptr<compose::Chain> newer;
+    {
+        const std::unique_lock lock(pending_mutex, std::try_to_lock);
+        if (!lock || !ready || (asks_first && !is_told)) return;
+        // Formats and extents change on both sides, and the host's images may come later than the plan.
+        if (chain && !ready->fits(frame) && chain->fits(frame)) return;
+        newer = std::move(ready);
+    }
+    take(std::move(newer));
+}
+
 void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
     // With more views than before, more recordings may be made before the oldest one has finished.
     const std::uint32_t recordings = std::max(chain ? chain->slots() : 0u, newer->slots());
@@ -143,18 +154,18 @@ void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
 
 /// By the contract the recordings that used a retired chain have finished once as many newer ones are made.
 void Composer::State::put_away_retired() {
-    bool is_any = false;
     for (compose::Chain** link = &retired; *link != nullptr;) {
         compose::Chain* const old = *link;
         if (old->recordings_left > 0) {
             link = &old->next_retired;
             continue;
         }
-        *link = old->next_retired;
-        worker->discard(*old);
-        is_any = true;
+        compose::Chain* const after = old->next_retired;
+        std::unique_ptr<compose::Garbage> gone(old);
+        worker->discard(gone);
+        if (gone) return static_cast<void>(gone.release());  // until the next recording
+        *link = after;
     }
-    if (is_any) worker->wake();
 }
 
 std::unique_lock<std::mutex> Composer::State::stop_compiling() {
@@ -166,7 +177,10 @@ std::unique_lock<std::mutex> Composer::State::stop_compiling() {
         pending_error.reset();
     }
     std::unique_lock lock(compile_mutex);
-    delete ready.exchange(nullptr);
+    {
+        const std::scoped_lock guard(pending_mutex);
+        ready.reset();
+    }
     worker->clean_up();
     return lock;
 }
@@ -205,13 +219,13 @@ Result<Plan> Composer::compile(const CompileDesc& desc) try { return state_->com
 
 std::optional<CompileDesc> Composer::State::last_desc() const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready.load() != nullptr) && later) return later->desc;
+    if ((is_compiling || ready) && later) return later->desc;
     return chain ? std::optional(chain->compiled_for()) : std::nullopt;
 }
 
 bool Composer::State::is_mixable(const plan::Entry& entry) const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready.load() != nullptr) && later && std::ranges::count(later->unmixed, entry.id) > 0)
+    if ((is_compiling || ready) && later && std::ranges::count(later->unmixed, entry.id) > 0)
         return false;
     const auto place = chain ? chain->index_of(entry.id) : std::nullopt;
     return !place || chain->program()->program.is_mixable[*place];
@@ -232,6 +246,7 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
             return caught("compile");
         }
     }();
+    std::unique_ptr<compose::Chain> older;
     const std::scoped_lock guard(pending_mutex);
     if (number != requests) return;
     is_compiling = false;
@@ -239,7 +254,8 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
         pending_error = std::move(made).error();
         return;
     }
-    delete ready.exchange(made->release());
+    older = std::exchange(ready, std::move(*made));
+    is_told = false;
 }
 
 Result<> Composer::compile_later(const CompileDesc& desc) try {
@@ -279,7 +295,9 @@ Result<> Composer::compile_later(const CompileDesc& desc) try {
 
 PendingCompile Composer::pending() const try {
     const std::scoped_lock lock(state_->pending_mutex);
-    return {.is_pending = state_->is_compiling || state_->ready.load() != nullptr, .error = state_->pending_error};
+    return {.is_pending = state_->is_compiling || state_->ready,
+            .is_ready = state_->ready != nullptr,
+            .error = state_->pending_error};
 } catch (...) {
     return {.is_pending = false, .error = caught("pending").value()};
 }
@@ -289,11 +307,17 @@ const Plan* Composer::current_plan() const try { return state_->chain ? &state_-
     return nullptr;
 }
 
+const Plan* Composer::coming_plan() {
+    const std::scoped_lock lock(state_->pending_mutex);
+    state_->asks_first = true;
+    state_->is_told = state_->ready != nullptr;
+    return state_->ready ? &state_->ready->plan() : nullptr;
+}
+
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
     const auto start = std::chrono::steady_clock::now();
     State& state = *state_;
-    if (state.ready.load(std::memory_order_relaxed) != nullptr)
-        state.take(std::unique_ptr<compose::Chain>(state.ready.exchange(nullptr, std::memory_order_acquire)));
+    state.take_ready(frame);
     if (!state.chain) return user_error("record: the composer has no plan; compile it first");
     if (state.retired != nullptr) state.put_away_retired();
     state.last = plan::moment_of(frame.time, frame.camera);

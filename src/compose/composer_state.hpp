@@ -2,7 +2,6 @@
 #pragma once
 // What a Composer is made of, for composer.cpp (the stack and its values) and composer_run.cpp (compiling, recording).
 
-#include <atomic>
 #include <darkroom/composer.hpp>
 #include <memory>
 #include <mutex>
@@ -28,6 +27,12 @@ struct Composer::State {
     [[nodiscard]] Result<plan::Entry*> checked(Handle handle) const;
     [[nodiscard]] std::shared_ptr<plan::Entry> make_entry(const EffectInfo& info, const void* parameters,
                                                           const EntryDesc& entry_desc) const;
+    /// The entry, and those that it replaced and plans still have.
+    template <class Visit>
+    static void for_all_of(plan::Entry& entry, const Visit& visit) {
+        visit(entry);
+        for (auto older = entry.replaced.lock(); older; older = older->replaced.lock()) visit(*older);
+    }
     /// Which of the entry's rows; the error names the nearest.
     [[nodiscard]] static Result<const ParamInfo*> row(const plan::Entry& entry, std::string_view parameter);
 
@@ -56,6 +61,8 @@ struct Composer::State {
     [[nodiscard]] std::unique_lock<std::mutex> stop_compiling();
 
     // Recording.
+    /// The plan that is ready, if this frame is for it. Never waits.
+    void take_ready(const Frame& frame);
     void take(std::unique_ptr<compose::Chain> newer);
     void put_away_retired();
 
@@ -74,7 +81,7 @@ struct Composer::State {
     graph::HistoryPool histories;
     std::shared_ptr<compose::StackProgram> program;  ///< of the last compile
 
-    mutable std::mutex pending_mutex;  ///< guards the next four; record() never takes it
+    mutable std::mutex pending_mutex;  ///< guards the next six; record() tries it and never waits
     std::uint64_t requests = 0;
     /// What the last compile_later() was asked for.
     struct Later {
@@ -84,7 +91,9 @@ struct Composer::State {
     std::optional<Later> later;
     bool is_compiling = false;
     std::optional<Error> pending_error;
-    std::atomic<compose::Chain*> ready{nullptr};  ///< for record() to take; owned
+    std::unique_ptr<compose::Chain> ready;           ///< for record() to take
+    bool is_told = false;                            ///< has coming_plan() shown it?
+    bool asks_first = false;                         ///< does the host ask for it?
 
     std::unique_ptr<compose::Worker> worker;
 };

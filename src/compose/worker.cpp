@@ -1,83 +1,99 @@
 // SPDX-License-Identifier: MIT
 #include "compose/worker.hpp"
 
-#include <utility>
-
 #include "core/caught.hpp"
 #include "core/thread/parallel.hpp"
 
 namespace darkroom::compose {
+
+/// Room for what a few recordings ask for; more waits for the next ones.
+Worker::Work::Work() {
+    wanted.reserve(256);
+    garbage.reserve(64);
+}
 
 Worker::Worker(gpu::Context& context, bool may_start) : context_(context) {
     if (may_start) thread_ = start_thread([this] { work(); });
 }
 
 void Worker::stop() {
-    is_ending_ = true;
-    wake();
+    {
+        const std::scoped_lock lock(mutex_);
+        is_ending_ = true;
+    }
+    is_due_.notify_one();
     thread_.reset();
 }
 
-Worker::~Worker() {
-    stop();
-    free_garbage(garbage_.take_all());
-}
+Worker::~Worker() { stop(); }
 
 void Worker::want(PassKernels& kernels, const plan::Shape& shape) {
-    if (thread_ && kernels.want(shape)) wanted_.push(kernels);
+    if (!thread_ || kernels.is_wanted(shape)) return;
+    {
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock || next_.wanted.size() == next_.wanted.capacity()) return;
+        next_.wanted.emplace_back(&kernels, shape);
+    }
+    kernels.set_wanted(shape);
+    is_due_.notify_one();
 }
 
-void Worker::wake() {
-    calls_.fetch_add(1, std::memory_order_release);
-    calls_.notify_one();
+void Worker::discard(std::unique_ptr<Garbage>& garbage) {
+    {
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock || next_.garbage.size() == next_.garbage.capacity()) return;
+        next_.garbage.push_back(std::move(garbage));
+    }
+    is_due_.notify_one();
 }
 
 void Worker::run(std::function<void()> task) {
     {
-        const std::scoped_lock lock(task_mutex_);
-        task_ = std::move(task);
+        const std::scoped_lock lock(mutex_);
+        next_.task.swap(task);
     }
-    wake();
+    is_due_.notify_one();
 }
 
 void Worker::cancel() {
-    const std::scoped_lock lock(task_mutex_);
-    task_ = nullptr;
+    std::function<void()> task;
+    const std::scoped_lock lock(mutex_);
+    next_.task.swap(task);
 }
 
 void Worker::clean_up() {
-    if (!thread_) free_garbage(garbage_.take_all());
+    if (!thread_) next_.garbage.clear();
 }
 
-void Worker::build_wanted(PassKernels* list) {
-    while (list != nullptr && !is_ending_) {
-        PassKernels* const after = list->next;  // once its wish is taken, it may be pushed again
-        try {
-            if (const std::optional<plan::Shape> shape = list->take_wanted())
-                if (const auto ok = list->build(context_, *shape); !ok)
-                    context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
-        } catch (...) {
-            context_.say(Severity::Warning, caught("building a lean kernel").value().text);
-        }
-        list = after;
+void Worker::build(PassKernels& kernels, const plan::Shape& shape) {
+    try {
+        if (const auto ok = kernels.build(context_, shape); !ok)
+            context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
+    } catch (...) {
+        context_.say(Severity::Warning, caught("building a lean kernel").value().text);
     }
 }
 
 void Worker::work() {
-    std::uint32_t seen = 0;
-    while (!is_ending_) {
-        calls_.wait(seen, std::memory_order_acquire);
-        seen = calls_.load(std::memory_order_acquire);
-        // In this order: a recording wishes for kernels of its chain before it puts that chain away.
-        Garbage* const garbage = garbage_.take_all();
-        build_wanted(wanted_.take_all());
-        free_garbage(garbage);
-        std::function<void()> task;
+    Work now;
+    const auto is_ending = [this] {
+        const std::scoped_lock lock(mutex_);
+        return is_ending_;
+    };
+    while (true) {
         {
-            const std::scoped_lock lock(task_mutex_);
-            std::swap(task, task_);
+            std::unique_lock lock(mutex_);
+            is_due_.wait(lock, [this] { return is_ending_ || next_.is_any(); });
+            if (is_ending_) return;
+            std::swap(now, next_);
         }
-        if (task && !is_ending_) task();
+        // In this order: a recording wishes for kernels of its chain before it puts that chain away.
+        for (const auto& [kernels, shape] : now.wanted)
+            if (!is_ending()) build(*kernels, shape);
+        now.wanted.clear();
+        now.garbage.clear();
+        if (now.task && !is_ending()) now.task();
+        now.task = nullptr;
     }
 }
 

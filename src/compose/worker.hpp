@@ -3,17 +3,27 @@
 // The one thread of a composer: it builds kernels that recordings missed, compiles what compile_later() asked for, and
 // frees what recordings put away. If no thread may or can start, kernels stay complete.
 
-#include <atomic>
+#include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
-#include "compose/atomic_stack.hpp"
 #include "compose/chain/pass_kernels.hpp"
 #include "gpu/device/context.hpp"
 
 namespace darkroom::compose {
+
+/// What a recording took out of use: the worker, or the next compile, frees it.
+struct Garbage {
+    Garbage() = default;
+    Garbage(const Garbage&) = delete;
+    Garbage& operator=(const Garbage&) = delete;
+    virtual ~Garbage() = default;
+};
 
 class Worker {
   public:
@@ -25,12 +35,10 @@ class Worker {
     void stop();
     [[nodiscard]] bool is_running() const { return thread_.has_value(); }
 
-    // While recording: never waits.
+    // While recording. These neither wait nor allocate: what cannot be done at once is left for the next recording.
     void want(PassKernels& kernels, const plan::Shape& shape);
-    void discard(Garbage& garbage) { garbage_.push(garbage); }
-    [[nodiscard]] AtomicStack<Garbage>& garbage() { return garbage_; }
-    /// There is something to do.
-    void wake();
+    /// Null behind it if it was taken.
+    void discard(std::unique_ptr<Garbage>& garbage);
 
     /// Runs `task` on the thread, after the one that runs now; one that has not begun is replaced.
     void run(std::function<void()> task);
@@ -40,16 +48,21 @@ class Worker {
     void clean_up();
 
   private:
+    struct Work {
+        std::vector<std::pair<PassKernels*, plan::Shape>> wanted;
+        std::vector<std::unique_ptr<Garbage>> garbage;
+        std::function<void()> task;
+        Work();
+        [[nodiscard]] bool is_any() const { return !wanted.empty() || !garbage.empty() || task != nullptr; }
+    };
     void work();
-    void build_wanted(PassKernels* list);
+    void build(PassKernels& kernels, const plan::Shape& shape);
 
     gpu::Context& context_;
-    AtomicStack<Garbage> garbage_;
-    AtomicStack<PassKernels> wanted_;
-    std::mutex task_mutex_;
-    std::function<void()> task_;
-    std::atomic<std::uint32_t> calls_{0};
-    std::atomic<bool> is_ending_{false};
+    std::mutex mutex_;  ///< guards the next two
+    Work next_;
+    bool is_ending_ = false;
+    std::condition_variable is_due_;
     std::optional<std::jthread> thread_;
 };
 

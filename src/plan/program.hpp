@@ -48,6 +48,7 @@ struct Entry {
 
     std::vector<Layer> layers;
     std::vector<Pulse> pulses;
+    std::weak_ptr<Entry> replaced{};  ///< of another effect under the same number, while a plan has it
 
     /// Base values, the layers over them, pulses added, then overrides in the order they were set. `out` holds
     /// info->parameters.words() words. Allocates nothing.

@@ -53,7 +53,6 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
     view_index_ = frame.view;
     is_abandonable_ = false;
-    has_missing_kernel_ = false;
     values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
     note_watch_states();
     write_frame_block(frame);
@@ -69,10 +68,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     // Effects have had their say: nothing of what follows fails.
     program.tables->upload(commands, program.recordings);
     program.lit.upload(commands, program.recordings);
-    if (Garbage* const staging = program.tables->take_staging(program.recordings, program.most_unfinished)) {
+    if (auto* const staging = program.tables->spent_staging(program.recordings, program.most_unfinished))
         worker_.discard(*staging);
-        worker_.wake();
-    }
     value_copies_.begin(slot_);
     physical_->begin(commands, context_.vk, *schedule_, frame.view);
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
@@ -102,7 +99,6 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     ++recordings_;
     ++program.recordings;
     is_abandonable_ = true;
-    if (has_missing_kernel_) worker_.wake();
     return {};
 }
 
@@ -157,8 +153,9 @@ void Chain::lend_images(const Frame& frame) {
 /// Images that the frame brings and the plan does not know: left as the host asks for, too.
 void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
     const auto is_used = [&](const ImageRef& image) {
-        return std::ranges::any_of(program_of().imports,
-                                   [&](const auto& which) { return which && overlap(image_of(frame, *which), image); });
+        return std::ranges::any_of(program_of().imports, [&](const auto& which) {
+            return which && overlap(image_of(frame, *which), image);
+        });
     };
     const auto leave = [&](const ImageRef& image) {
         if (image.image == VK_NULL_HANDLE || is_used(image)) return;
@@ -316,10 +313,9 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
     PassKernels& kernels = *desc_.program->kernels[pass];
     last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
     if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], desc_.program->recordings,
-                                                       desc_.program->most_unfinished, worker_.garbage()))
+                                                       desc_.program->most_unfinished))
         return *kernel;
     worker_.want(kernels, last_shapes_[pass]);
-    has_missing_kernel_ = true;
     return kernels.complete();
 }
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "compose/chain/frame_check.hpp"
 #include "compose/chain/value_copies.hpp"
 #include "compose/stack/stack_program.hpp"
 #include "compose/worker.hpp"
@@ -37,6 +38,8 @@ class Chain final : public Garbage {
 
     /// Allocates nothing and waits for nothing. On error nothing is recorded.
     [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame);
+    /// Are its images in the formats, and no larger than the extents, that this was compiled for?
+    [[nodiscard]] bool fits(const Frame& frame) const { return compose::fits(program_of(), desc_.compile, frame); }
     /// Takes back the last recording. False: there is none, or it was taken back.
     bool abandon();
     /// Builds the lean kernels of the present values on the calling thread, which is the one that records.
@@ -143,7 +146,6 @@ class Chain final : public Garbage {
     std::vector<PassVector> custom_;
     std::vector<std::uint32_t> words_;
     std::uint32_t slot_ = 0;
-    bool has_missing_kernel_ = false;
     std::uint32_t view_index_ = 0;           ///< of the last recording
     std::vector<std::uint8_t> has_history_;  ///< per entry, in the present recording
     // Per watch: what the present frame wants of it, or null; and what came of that.

@@ -312,6 +312,19 @@ std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id)
     return static_cast<std::size_t>(found - desc.watches.begin());
 }
 
+bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
+    const auto is_within = [](const ImageRef& image, VkExtent2D most) {
+        const VkExtent2D extent = image.used_region().extent;
+        return is_empty(most) || (extent.width <= most.width && extent.height <= most.height);
+    };
+    if (!is_within(frame.color, desc.max_extent) || !is_within(frame.target, desc.target_extent)) return false;
+    return std::ranges::all_of(program.imports, [&](const auto& which) {
+        if (!which || which->kind == Kind::Shadow || which->kind == Kind::Watched) return true;
+        const ImageRef& image = host_image(frame, *which);
+        return image.is_given() && image.format == use_of(desc, {.which = *which}).format;
+    });
+}
+
 Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
     AllGiven all;
     // The colour first: the extents of the others are compared with its own.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The kernels of one pass that a composer knows: the complete one, and lean ones by their shape. They come from the
-// device's store. Recording looks one up without a lock; what is missing is built by the worker and arrives later.
+// device's store. What is missing while one records is built by the worker and arrives later.
 
 #include <array>
 #include <atomic>
@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "compose/atomic_stack.hpp"
 #include "gpu/kernel/kernel_store.hpp"
 #include "plan/program.hpp"
 
@@ -21,7 +20,6 @@ class PassKernels {
     explicit PassKernels(const plan::ProgramPass& pass) : pass_(pass) {}
     PassKernels(const PassKernels&) = delete;
     PassKernels& operator=(const PassKernels&) = delete;
-    ~PassKernels();
 
     // At compile, or on the worker.
     [[nodiscard]] Result<> build_complete(gpu::KernelStore& store);
@@ -32,18 +30,14 @@ class PassKernels {
     [[nodiscard]] const gpu::Kernel& complete() const { return *complete_; }
     /// Was it built before? It may have made room for others since; then recordings want it again.
     [[nodiscard]] bool was_built(const plan::Shape& shape) const;
-    /// The shape that was last missing, once.
-    [[nodiscard]] std::optional<plan::Shape> take_wanted();
 
-    // On the thread that records.
+    // On the thread that records: never waits.
     /// Null: the kernel is not there yet. `recording` counts those of all chains of the program, of which the last
-    /// `unfinished` may still use what they found. What must go goes to `garbage`.
-    [[nodiscard]] const gpu::Kernel* find(const plan::Shape& shape, std::uint64_t recording, std::uint64_t unfinished,
-                                          AtomicStack<Garbage>& garbage);
-    /// True: it was not wanted yet, so the worker has to be told.
-    [[nodiscard]] bool want(const plan::Shape& shape);
-
-    PassKernels* next = nullptr;  ///< in the worker's list of those that want something
+    /// `unfinished` may still use what they found.
+    [[nodiscard]] const gpu::Kernel* find(const plan::Shape& shape, std::uint64_t recording, std::uint64_t unfinished);
+    /// Has the worker been told of it, as the last one that was missing?
+    [[nodiscard]] bool is_wanted(const plan::Shape& shape) const { return wanted_ == shape; }
+    void set_wanted(const plan::Shape& shape) { wanted_ = shape; }
 
   private:
     struct Lean {
@@ -51,11 +45,7 @@ class PassKernels {
         std::shared_ptr<const gpu::Kernel> kernel;  ///< null: it could not be built
         std::uint64_t last_used = 0;
     };
-    struct Arrival : Garbage {
-        Lean lean;
-        Arrival* next = nullptr;
-    };
-    void take_arrivals(std::uint64_t recording, std::uint64_t unfinished, AtomicStack<Garbage>& garbage);
+    void take_arrivals(std::uint64_t recording, std::uint64_t unfinished);
     /// Where a further kernel goes: behind the last, or over the one that was used longest ago, if no recording uses
     /// it.
     [[nodiscard]] Lean* place_for_another(std::uint64_t recording, std::uint64_t unfinished);
@@ -63,15 +53,13 @@ class PassKernels {
 
     const plan::ProgramPass& pass_;
     std::shared_ptr<const gpu::Kernel> complete_;
-    mutable std::mutex built_mutex_;  ///< never taken while recording
+    mutable std::mutex mutex_;  ///< guards the next two; find() tries it
     std::vector<plan::Shape> built_;
-    AtomicStack<Arrival> arrivals_;
+    std::vector<Lean> arrivals_;            ///< once taken: what gave way to them, which the next build() frees
+    std::atomic<bool> has_arrivals_{false};  ///< so that find() need not try the lock
     std::array<Lean, 64> lean_{};
     std::size_t count_ = 0;
-    // Words that may tear: the worst is a kernel that nobody asked for.
-    using ShapeWords = std::array<std::uint64_t, sizeof(plan::Shape) / sizeof(std::uint64_t)>;
-    std::array<std::atomic<std::uint64_t>, sizeof(plan::Shape) / sizeof(std::uint64_t)> wanted_{};
-    std::atomic<bool> is_wanted_{false};
+    std::optional<plan::Shape> wanted_;
 };
 
 }  // namespace darkroom::compose

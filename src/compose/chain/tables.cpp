@@ -37,11 +37,14 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::Fixed
     auto staging =
         gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
     if (!staging) return failure(std::move(staging));
-    out.staging_ = std::make_unique<Staging>();
-    out.staging_->buffer = std::move(*staging);
+    out.staged_ = staging->handle;
+    std::byte* const mapped = staging->memory.mapped;
+    auto kept = std::make_unique<Staging>();
+    kept->buffer = std::move(*staging);
+    out.staging_ = std::move(kept);
     for (std::size_t i = 0; i < fixed.size(); ++i) {
         const auto& data = fixed[i].desc.data;
-        std::memcpy(out.staging_->buffer.memory.mapped + out.tables_[i].offset, data.data(), data.size());
+        std::memcpy(mapped + out.tables_[i].offset, data.data(), data.size());
     }
     return out;
 }
@@ -70,7 +73,7 @@ void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
         const VkBufferImageCopy copy{.bufferOffset = table.offset,
                                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                      .imageExtent = table.image.info.extent};
-        vk.CmdCopyBufferToImage(commands, staging_->buffer.handle, table.image.handle,
+        vk.CmdCopyBufferToImage(commands, staged_, table.image.handle,
                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
@@ -82,9 +85,9 @@ void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
     }
 }
 
-Garbage* Tables::take_staging(std::uint64_t recording, std::uint64_t unfinished) {
+std::unique_ptr<Garbage>* Tables::spent_staging(std::uint64_t recording, std::uint64_t unfinished) {
     const bool is_finished = uploaded_by_ && recording >= *uploaded_by_ + 1 + unfinished;
-    return is_finished ? staging_.release() : nullptr;
+    return is_finished && staging_ ? &staging_ : nullptr;
 }
 
 gpu::Binding Tables::binding(std::size_t index) const {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "compose/atomic_stack.hpp"
+#include "compose/worker.hpp"
 #include "gpu/resource/resources.hpp"
 #include "plan/program.hpp"
 
@@ -20,8 +20,8 @@ class Tables {
     /// The first time: copies and barriers. Later: nothing. `recording` is the number of the recording it is for.
     void upload(VkCommandBuffer commands, std::uint64_t recording);
     /// What the upload was copied from, once no recording uses it: `recording` is the next one's number, and the last
-    /// `unfinished` before it may still run. To be freed; null: nothing, or not yet.
-    [[nodiscard]] Garbage* take_staging(std::uint64_t recording, std::uint64_t unfinished);
+    /// `unfinished` before it may still run. To be taken out and freed; null: nothing, or not yet.
+    [[nodiscard]] std::unique_ptr<Garbage>* spent_staging(std::uint64_t recording, std::uint64_t unfinished);
     /// That recording will not be submitted: what it uploaded is uploaded again.
     void take_back(std::uint64_t recording);
     [[nodiscard]] gpu::Binding binding(std::size_t index) const;
@@ -38,7 +38,8 @@ class Tables {
     };
     gpu::Memory memory_;  ///< of all images
     std::vector<Table> tables_;
-    std::unique_ptr<Staging> staging_;
+    std::unique_ptr<Garbage> staging_;
+    VkBuffer staged_ = VK_NULL_HANDLE;  ///< its buffer
     std::optional<std::uint64_t> uploaded_by_;
 };
 

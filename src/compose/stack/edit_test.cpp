@@ -139,6 +139,109 @@ TEST_F(ComposeEdit, RecordingGoesOnWithThePlanItHas) {
     EXPECT_GT(test::worst_difference(host.run(composer), brighter), 0.1);
 }
 
+// The entry is the same one from add to remove, so what runs goes on with its values, whatever a compile makes later.
+TEST_F(ComposeEdit, ControlsOfAnEntryThatIsWiredAnewMoveThePictureThatRuns) {
+    const Host host(small_picture());
+    Composer composer(host.device);
+    const Handle damage = add(composer, "exposure", {{"exposure", 0.5}});
+    const Handle exposure = add(composer, "exposure", {{"exposure", 2}});
+    must(composer.compile(host.compile_desc()));
+    const double plain = small_picture().pixels[5].g / 2;
+    const auto green = [&] { return host.run(composer).pixels[5].g; };
+    const std::uint32_t quarter = std::bit_cast<std::uint32_t>(0.25f);
+    const auto look_at_all = [&] {
+        must(composer.set(exposure, "exposure", 3.0));
+        EXPECT_NEAR(green(), plain * 3, 1e-4);
+        must(composer.set_override(exposure, "exposure", "damage", {&quarter, 1}));
+        EXPECT_NEAR(green(), plain / 4, 1e-4);
+        composer.drop_overrides("damage");
+        EXPECT_NEAR(green(), plain * 3, 1e-4);
+        must(composer.add_layer({.name = "dark", .weight = 1, .values = {{exposure, "exposure", {quarter}}}}));
+        EXPECT_NEAR(green(), plain / 4, 1e-4);
+        composer.remove_layer("dark");
+        must(composer.add_pulse({.event = "hit", .entry = exposure, .parameter = "exposure", .amount = {2}}));
+        EXPECT_EQ(composer.fire("hit"), 1u);
+        EXPECT_NEAR(green(), plain * 5, 1e-4);
+        composer.remove_pulses();
+        must(composer.set_enabled(exposure, false));
+        EXPECT_NEAR(green(), plain, 1e-4);
+        must(composer.set_enabled(exposure, true));
+    };
+    look_at_all();
+    must(composer.rewire(exposure, *composer.desc(exposure)));
+    look_at_all();
+    must(composer.rewire(exposure, {.input = scene_color}));
+    look_at_all();  // behind the other one until it is compiled
+    const Handle gone = add(composer, "dither");
+    must(composer.rewire(exposure, {.input = gone}));
+    must(composer.remove(gone));
+    EXPECT_FALSE(composer.compile(host.compile_desc()));
+    look_at_all();
+    must(composer.rewire(exposure, {.input = damage}));
+    must(composer.compile(host.compile_desc()));
+    look_at_all();
+    // The same effect put in its own place has new values and keeps the rest.
+    must(composer.replace(exposure, *find_effect("exposure"), nullptr));
+    EXPECT_NEAR(green(), plain, 1e-4);
+    look_at_all();
+    // Another one in its place: the picture that runs is switched by the handle still.
+    must(composer.replace(exposure, *find_effect("grayscale"), nullptr));
+    EXPECT_NEAR(green(), plain * 3, 1e-4);
+    must(composer.set_enabled(exposure, false));
+    EXPECT_NEAR(green(), plain, 1e-4);
+    must(composer.set_enabled(exposure, true));
+    must(composer.set_opacity(exposure, 0.5f));
+    EXPECT_NEAR(green(), plain * 2, 1e-4);
+}
+
+/// Until a plan is ready; records nothing.
+void wait_until_ready(const Composer& composer) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!composer.pending().is_ready && std::chrono::steady_clock::now() < deadline)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_TRUE(composer.pending().is_ready);
+}
+
+TEST_F(ComposeEdit, APlanForOtherFormatsWaitsForTheFirstFrameOfThem) {
+    const Host host(small_picture());
+    const Host other(small_picture(), VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM);
+    for (const std::uint32_t threads : {0U, 1U}) {
+        Composer composer(host.device, {.max_threads = threads});
+        add(composer, "exposure", {{"exposure", 2}});
+        must(composer.compile(host.compile_desc()));
+        const ReferenceImage before = host.run(composer);
+        add(composer, "negative");
+        EXPECT_FALSE(composer.pending().is_ready);
+        must(composer.compile_later(other.compile_desc()));
+        wait_until_ready(composer);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(test::worst_difference(host.run(composer), before), 0);
+        EXPECT_TRUE(composer.pending().is_ready);
+        EXPECT_GT(test::worst_difference(other.run(composer), before), 0.1);
+        EXPECT_FALSE(composer.pending().is_pending);
+        EXPECT_FALSE(host.record(composer, host.frame())) << "of formats that are no more";
+    }
+}
+
+TEST_F(ComposeEdit, AHostThatAsksForTheComingPlanGetsNoOther) {
+    const Host host(small_picture());
+    Composer composer(host.device, {.max_threads = 0});
+    add(composer, "exposure", {{"exposure", 2}});
+    must(composer.compile(host.compile_desc()));
+    const ReferenceImage before = host.run(composer);
+    EXPECT_EQ(composer.coming_plan(), nullptr);
+    add(composer, "gaussian_blur");
+    must(composer.compile_later(host.compile_desc()));
+    EXPECT_TRUE(composer.pending().is_ready);
+    EXPECT_EQ(test::worst_difference(host.run(composer), before), 0) << "it came after the host had asked";
+    const Plan* const coming = composer.coming_plan();
+    ASSERT_NE(coming, nullptr);
+    EXPECT_GT(coming->passes.size(), composer.current_plan()->passes.size());
+    const std::string text = coming->text();
+    EXPECT_GT(test::worst_difference(host.run(composer), before), 1e-3);
+    EXPECT_EQ(composer.current_plan()->text(), text);
+    EXPECT_EQ(composer.coming_plan(), nullptr);
+}
+
 /// Holds whoever makes a pipeline while it is closed.
 std::atomic<bool> is_gate_closed{false};
 std::atomic<int> waiting{0};

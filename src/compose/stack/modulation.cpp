@@ -126,7 +126,14 @@ Result<> Composer::add_layer(const LayerDesc& desc) try {
                 found, {*entry, {.name = desc.name, .weight = desc.weight, .distance = desc.distance, .values = {}}});
         if (auto ok = add_value(**entry, value, found->second); !ok) return ok;
     }
-    for (auto& [entry, layer] : made) entry->layers.reserve(entry->layers.size() + 1);
+    for (auto& [entry, layer] : made) {
+        if (layer.opacity && !state_->is_mixable(*entry))
+            state_->context->say(
+                Severity::Info, fmt::format("{}: {}.opacity: it has passes of its own and was compiled with opacity 1: "
+                                            "between 0 and 1 it moves once the stack is compiled again",
+                                            shown, entry->desc.name));
+        entry->layers.reserve(entry->layers.size() + 1);
+    }
     for (auto& [entry, layer] : made) entry->layers.push_back(std::move(layer));
     return {};
 } catch (...) {
@@ -183,7 +190,8 @@ Composer::EntryValues Composer::values_at(Handle handle, double time, const Came
     EntryValues out{.words = std::vector<std::uint32_t>(entry->base.size())};
     const plan::Presence presence = entry->evaluate(out.words, plan::moment_of(time, camera));
     out.is_enabled = presence.is_enabled;
-    out.opacity = presence.opacity;
+    const bool is_shown = presence.opacity <= 0 || presence.opacity >= 1 || state_->is_mixable(*entry);
+    out.opacity = is_shown ? presence.opacity : 1;
     return out;
 } catch (...) {
     return {};

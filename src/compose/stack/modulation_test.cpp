@@ -307,6 +307,21 @@ TEST_F(ComposeModulatedFrames, WhatIsFiredWithoutATimeBeginsWithTheNextRecord) {
     EXPECT_EQ(light_at(5.4), 0.125);
 }
 
+// Until the stack is compiled again nobody lays the entry's result over its input, and the Composer says so.
+TEST_F(ComposeModulatedFrames, AnOpacityThatThePlanCannotShowIsToldAsItIs) {
+    const test::Host host(test::random_display(16, 16, 3));
+    Composer composer(host.device);
+    const Handle blur = test::add(composer, "gaussian_blur", {{"radius", 4}});
+    test::must(composer.compile(host.compile_desc()));
+    const ReferenceImage blurred = host.run(composer);
+    test::must(composer.add_layer({.name = "fade", .weight = 0.5f, .values = {{blur, "opacity", words_of(0.0f)}}}));
+    EXPECT_EQ(test::worst_difference(host.run(composer), blurred), 0);
+    EXPECT_EQ(composer.values_at(blur, 0, {}).opacity, 1);
+    test::must(composer.compile(host.compile_desc()));
+    EXPECT_GT(test::worst_difference(host.run(composer), blurred), 0.01);
+    EXPECT_EQ(composer.values_at(blur, 0, {}).opacity, 0.5f);
+}
+
 // A layer that changes an entry's opacity and another one's switch, against the references, with kernels of both forms.
 TEST_F(ComposeModulatedFrames, LayersMoveOpacityAndSwitchesAsTheReferencesDo) {
     const ReferenceImage picture = test::round_to_float(test::random_display(31, 17, 8));
