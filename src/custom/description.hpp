@@ -130,6 +130,10 @@ struct Halves {
 /// text with the values of its `#define`s in place, line by line: a macro would reach the effects of the same kernel.
 [[nodiscard]] Result<std::string> expand_code(std::string_view text, std::size_t& line);
 
+/// The code with the effect's name before the names of its functions, structs and constants, but for those that begin
+/// with it: an effect beside it in a kernel may have a helper of the same name.
+[[nodiscard]] std::string with_own_names(std::string_view code, std::string_view effect);
+
 /// The whole file; errors read "shown_name:line: ...".
 [[nodiscard]] Result<> read_description(Description& out, std::string_view text, std::string_view shown_name);
 

@@ -2,6 +2,8 @@
 // Files of users in one kernel: what one of them names stays its own.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <darkroom/custom_effect.hpp>
 #include <string>
 
@@ -46,6 +48,32 @@ TEST(ComposeCustomFusion, TwoFilesOfOneNameKeepTheirOwnParameters) {
         EXPECT_EQ(out.at(3, 3).r, 0.25) << (is_fused ? "fused" : "unfused");
         EXPECT_EQ(out.at(3, 3).g, 1);
         EXPECT_EQ(out.at(3, 3).b, 1);
+    }
+}
+
+// Functions, constants and structs of the same names, of which nobody told the other.
+TEST(ComposeCustomFusion, HelpersOfOneNameAreEachFilesOwn) {
+    const auto file = [](std::string_view name, std::string_view type, double factor) {
+        return fmt::format(
+            "// @effect {0}: Multiplies.\n"
+            "const float factor = {2:.3f}, unused[2] = float[2](factor, 1.0);\n"
+            "struct Pair {{ float factor, rest; }};\n"
+            "float luma(vec3 c);\n"
+            "Pair pair_of(float a) {{ return Pair(a, unused[1]); }}\n"
+            "float luma(vec3 c) {{ Pair pair = pair_of(factor); return c.g * pair.factor * pair.rest; }}\n"
+            "float {0}_own(vec3 c) {{ return luma(c); }}\n"
+            "vec4 {0}(vec4 color, Pixel pixel, {1} parameters) {{ return vec4(vec3({0}_own(color.rgb)), 1.0); }}\n",
+            name, type, factor);
+    };
+    const CustomEffect a = must(CustomEffect::parse(file("one", "One", 0.5), "one.glsl"));
+    const CustomEffect b = must(CustomEffect::parse(file("other", "Other", 0.25), "other.glsl"));
+    for (const bool is_fused : {true, false}) {
+        const auto fill = [&](Composer& composer) {
+            for (const CustomEffect* const effect : {&a, &b, &a}) composer.add(effect->info(), nullptr);
+        };
+        const ReferenceImage out = test::develop(fill, test::uniform(3, 3, {1, 1, 1, 1}), {.fuse = is_fused});
+        ASSERT_FALSE(out.pixels.empty());
+        EXPECT_EQ(out.at(1, 1).r, 0.0625);
     }
 }
 

@@ -183,6 +183,43 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
     return out;
 }
 
+std::string with_own_names(std::string_view code, std::string_view effect) {
+    const auto is_one_of = [](std::string_view text, std::string_view marks) {
+        return text.size() == 1 && marks.find(text) != std::string_view::npos;
+    };
+    std::set<std::string_view> names;
+    std::string out;
+    // Twice: which names the file gives, then in their places. Names of members stay, as they do behind a dot.
+    for (const bool is_renaming : {false, true}) {
+        gpu::GlslScanner scanner(code);
+        Token last;
+        std::size_t depth = 0;
+        bool is_struct = false, is_shared = false;  // what is shared belongs to one pass alone
+        for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+            const bool is_word = token.kind == Token::Kind::Word;
+            const bool is_declared = is_word && is_one_of(scanner.peek().text, depth == 0 ? "(=[;," : "[;,") &&
+                                     (last.kind == Token::Kind::Word || is_one_of(last.text, "],"));
+            const bool is_member = depth > 0 && is_struct && is_declared;
+            if (is_renaming) {
+                if (is_word && !is_member && names.contains(token.text))
+                    out.append(effect).append(token.text.starts_with('_') ? "" : "_");
+                out += token.text;
+            } else if (depth == 0 && !is_shared && is_word && (is_declared || last.text == "struct") &&
+                       token.text != effect && !token.text.starts_with(std::string(effect) + "_")) {
+                names.insert(token.text);
+            }
+            if (token.kind == Token::Kind::Blank || token.kind == Token::Kind::Directive) continue;
+            if (depth == 0 && is_one_of(token.text, ";{")) is_struct &= token.text == "{";
+            is_struct |= depth == 0 && token.text == "struct";
+            is_shared = depth == 0 && token.text == ";" ? false : is_shared || token.text == "shared";
+            if (is_one_of(token.text, "({[")) ++depth;
+            if (is_one_of(token.text, ")}]") && depth > 0) --depth;
+            last = token;
+        }
+    }
+    return out;
+}
+
 // A struct of another name is an error of the GLSL compiler, which does not know the name that was meant.
 Result<> check_struct(std::string_view code, std::string_view function, std::string_view struct_name,
                       std::string_view form, std::size_t& line) {

@@ -148,7 +148,12 @@ class FileReader {
         if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; allowed is text");
         auto code = expand_code(text_, line_);
         if (!code) return failure(std::move(code));
-        split_lines(out_.keep(*code));
+        constexpr std::string_view effect_line = "// @effect ";
+        const std::size_t at = code->find(effect_line);
+        const std::string_view named =
+            at == std::string::npos ? std::string_view{} : std::string_view(*code).substr(at + effect_line.size());
+        const std::string name(trimmed(named.substr(0, named.find_first_of(":\n"))));
+        split_lines(out_.keep(check_name(name) ? with_own_names(*code, name) : *code));
         if (auto ok = read_lines(); !ok) return ok;
         line_ = 1;
         if (out_.info.name.empty()) return user_error("no line `// @effect NAME: SENTENCE.` before the code");
