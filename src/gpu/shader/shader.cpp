@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "core/own_file.hpp"
+#include "core/system/folders.hpp"
 #include "core/thread/parallel.hpp"
 #include "gpu/device/device_facts.hpp"
 #include "gpu/shader/glsl_compiler.hpp"
@@ -43,6 +44,8 @@ constexpr std::uintmax_t most_entry_bytes = std::uintmax_t{16} << 20;
 std::optional<Words> read_entry(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return {};
+    // What it says is run, so nobody else may have written it.
+    if (!is_of_this_user_alone(path) || !is_of_this_user_alone(path.parent_path())) return {};
     const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_entry_bytes});
     if (!bytes || bytes->size() <= sizeof(Hash) || bytes->size() % sizeof(std::uint32_t) != 0) return {};
     Hash expected;

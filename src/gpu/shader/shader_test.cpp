@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "core/files.hpp"
+#include "core/system/folders.hpp"
 #include "core/thread/parallel.hpp"
 
 namespace darkroom::gpu {
@@ -126,6 +127,25 @@ TEST_F(GpuShaderCache, DoesNotTrustADamagedEntry) {
         EXPECT_EQ(compiler.compile(empty).value(), *made) << size;
     }
     EXPECT_EQ(compiler.from_cache, 0U);
+}
+
+TEST_F(GpuShaderCache, DoesNotTrustWhatOthersMayWrite) {
+    if (!is_of_this_user_alone(std::filesystem::temp_directory_path().root_path()))
+        GTEST_SKIP() << "everything here may be written by others";
+    using enum std::filesystem::perms;
+    const Result<Words> made = ShaderCompiler(folder).compile(empty);
+    ASSERT_TRUE(made);
+    for (const std::filesystem::path& path : {only_entry(), folder}) {
+        std::filesystem::permissions(path, others_write, std::filesystem::perm_options::add);
+        ShaderCompiler compiler(folder);
+        EXPECT_EQ(compiler.compile(empty).value(), *made);
+        EXPECT_EQ(compiler.from_cache, 0U) << path;
+        std::filesystem::permissions(path, others_write, std::filesystem::perm_options::remove);
+        if (path == folder) continue;
+        ShaderCompiler again(folder);
+        EXPECT_EQ(again.compile(empty).value(), *made);
+        EXPECT_EQ(again.from_cache, 1U) << "what was written anew is its own";
+    }
 }
 
 TEST_F(GpuShaderCache, ForgetsWhatWasNotUsedForLongest) {
