@@ -112,9 +112,18 @@ std::vector<std::string> missing_capabilities(const Context& context, const Adop
     } else if ((families[desc.queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
         missing.push_back(fmt::format("compute in queue family {}", desc.queue_family));
     }
-    const char* const where = desc.enabled_features == nullptr ? " (enabled_features is null)" : "";
-    if (!enabled.has_synchronization2) missing.push_back(fmt::format("the feature synchronization2{}", where));
-    if (!enabled.has_dynamic_rendering) missing.push_back(fmt::format("the feature dynamicRendering{}", where));
+    const std::vector<std::string> of_device =
+        gpu::missing_for_creation(context.vk, desc.physical_device, context.info);
+    const char* const where = desc.enabled_features == nullptr ? "enabled_features is null" : "not in enabled_features";
+    const auto check = [&](bool is_enabled, std::string_view name) {
+        const std::string feature = fmt::format("the feature {}", name);
+        if (is_enabled) return;
+        const bool is_there = std::ranges::find(of_device, feature) == of_device.end();
+        missing.push_back(is_there ? fmt::format("{} (it has it, but it is not enabled: {})", feature, where)
+                                   : feature);
+    };
+    check(enabled.has_synchronization2, "synchronization2");
+    check(enabled.has_dynamic_rendering, "dynamicRendering");
     return missing;
 }
 

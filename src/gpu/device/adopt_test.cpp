@@ -176,6 +176,26 @@ TEST(GpuAdopt, NamesTheExtensionsThatVulkan12Lacks) {
         << "the instance is the reason, not the device: " << none.error().text;
 }
 
+// What a host has to change is its own code, not its machine.
+TEST(GpuAdopt, AFeatureThatIsThereAndNotEnabledIsToldAsThat) {
+    const Host host;
+    AdoptDesc desc = host.desc();
+    VkPhysicalDeviceVulkan13Features half{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                          .synchronization2 = VK_TRUE};
+    const VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &half};
+    desc.enabled_features = &features;
+    const Result<Device> one = Device::adopt(desc);
+    ASSERT_FALSE(one);
+    EXPECT_TRUE(has(one.error().text,
+                    "the feature dynamicRendering (it has it, but it is not enabled: not in enabled_features)"))
+        << one.error().text;
+    EXPECT_FALSE(has(one.error().text, "synchronization2")) << one.error().text;
+    desc.enabled_features = nullptr;
+    const Result<Device> none = Device::adopt(desc);
+    ASSERT_FALSE(none);
+    EXPECT_TRUE(has(none.error().text, "not enabled: enabled_features is null")) << none.error().text;
+}
+
 TEST(GpuAdopt, AnInstanceThatIsTooOldIsTheReasonGiven) {
     const Host host;
     AdoptDesc desc = host.desc();
