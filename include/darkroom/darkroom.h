@@ -404,12 +404,13 @@ typedef struct DarkroomLight {
     uint32_t struct_size;
     uint32_t cascade_count;     ///< at most 4; 0: casts no shadow
     float direction[3];         ///< toward the light, world space; 0: up
-    float color[3];             ///< linear Rec. 709, times intensity; all 0: white
-    float volumetric_color[3];  ///< all 0: white
+    float color[3];             ///< linear Rec. 709, times intensity; all 0 without has_colors: white
+    float volumetric_color[3];  ///< all 0 without has_colors: white
     float volumetric_intensity;
     float splits[4];              ///< far distance of each cascade, along the view axis
     float world_to_cascade[64];   ///< four matrices: to x, y in [-1, 1] (y down) and depth in [0, 1]; all 0: identity
     const DarkroomImage* cascades;  ///< D32_SFLOAT array of squares, a layer a cascade
+    VkBool32 has_colors;            ///< colours that are all 0 are meant
 } DarkroomLight;
 
 /// What a frame wants of a watch of DarkroomCompileDesc.
@@ -536,7 +537,7 @@ typedef struct DarkroomEntryDesc {
     DarkroomHandle mask;      ///< luminance of this picture scales opacity
     const char* name;         ///< null: the effect's name, then name#2 ...
     const char* output;       ///< a name for its output, for looks
-    float opacity;            ///< (0, 1]; 0: 1. darkroom_composer_set_opacity takes 0, too
+    float opacity;            ///< [0, 1]; 0 without has_opacity: 1
     VkBool32 is_ui;           ///< of the interface's own chain
     VkBool32 is_disabled;
     uint32_t scale_numerator;    ///< size that the entry works at, relative to its input; 0: 1
@@ -544,6 +545,7 @@ typedef struct DarkroomEntryDesc {
     VkFormat format;             ///< of the image that holds its output; 0: that of pictures between kernels
     const uint32_t* words;       ///< all of the effect's parameters, word_count of DarkroomEffectInfo; null: defaults
     uint32_t word_count;
+    VkBool32 has_opacity;        ///< an opacity of 0 is meant; darkroom_composer_desc sets it
 } DarkroomEntryDesc;
 
 /// What a composer is made with.
@@ -636,7 +638,7 @@ DARKROOM_API DarkroomResult darkroom_composer_size(DarkroomComposer composer, ui
 DARKROOM_API DarkroomResult darkroom_composer_entry(DarkroomComposer composer, uint32_t index, DarkroomHandle* handle);
 /// Does the handle name an entry of this stack?
 DARKROOM_API DarkroomResult darkroom_composer_check(DarkroomComposer composer, DarkroomHandle handle);
-/// The entry's effect.
+/// The entry's effect. Of a custom one the handle is valid until the last of its entries is removed or replaced.
 DARKROOM_API DarkroomResult darkroom_composer_info(DarkroomComposer composer, DarkroomHandle handle,
                                                    DarkroomEffect* effect);
 /// What the entry has beside its effect's parameters, and their base values. Texts and words are valid until the stack
@@ -763,10 +765,14 @@ DARKROOM_API DarkroomResult darkroom_composer_remove_layer(DarkroomComposer comp
 /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. `plan` may be null.
 DARKROOM_API DarkroomResult darkroom_composer_compile(DarkroomComposer composer, const DarkroomCompileDesc* desc,
                                                       DarkroomPlan* plan);
-/// The same on the composer's own thread. Returns at once; record takes the new plan when it is ready.
+/// The same on the composer's own thread. Returns at once; the first record behind it whose frame has the formats and
+/// extents of `desc` takes the new plan, and until then frames of the old ones go on.
 DARKROOM_API DarkroomResult darkroom_composer_compile_later(DarkroomComposer composer, const DarkroomCompileDesc* desc);
 /// Is one under way, or ready for the next record? The result is that of the last one that has ended.
 DARKROOM_API DarkroomResult darkroom_composer_pending(DarkroomComposer composer, VkBool32* is_pending);
+/// The plan that the next record takes; null: none is ready. For a host that places barriers by what plans tell: from
+/// the first call on, record takes no plan that the last call has not told of.
+DARKROOM_API DarkroomResult darkroom_composer_coming_plan(DarkroomComposer composer, DarkroomPlan* plan);
 /// What record works by. An error: nothing yet.
 DARKROOM_API DarkroomResult darkroom_composer_current_plan(DarkroomComposer composer, DarkroomPlan* plan);
 /// The same as compile without a device's objects, so on darkroom_device_assumed, too.

@@ -62,10 +62,9 @@ inline constexpr std::uint32_t most_elements = 65536;
 
 /// A struct as this library knows it, of one whose size says how much the caller knows. `name` is its type's.
 template <class T>
-[[nodiscard]] Result<T> read(const T* given, std::string_view name) {
+[[nodiscard]] Result<T> read(const T* given, std::string_view name, std::size_t size) {
     static_assert(std::is_trivially_copyable_v<T>);
     T out{};
-    const std::size_t size = given->struct_size;
     // The first version of each struct is the present one.
     if (size < sizeof(T) || size > 16 * sizeof(T))
         return user_error(
@@ -77,17 +76,22 @@ template <class T>
     std::memcpy(&out, bytes, sizeof(T));
     return out;
 }
+template <class T>
+[[nodiscard]] Result<T> read(const T* given, std::string_view name) {
+    return read(given, name, given->struct_size);
+}
 /// Null: all zero.
 template <class T>
 [[nodiscard]] Result<T> read_or_default(const T* given, std::string_view name) {
     return given == nullptr ? Result<T>(T{}) : read(given, name);
 }
-/// One of an array of structs, whose distance is the size of the first.
+/// One of an array of structs: the size of the first is that of all.
 template <class T>
 [[nodiscard]] Result<T> read_at(const T* first, std::uint32_t index, std::string_view name) {
     if (first == nullptr) return is_null(fmt::format("{}[{}]", name, index));
     const auto* const bytes = reinterpret_cast<const unsigned char*>(first);
-    return read(reinterpret_cast<const T*>(bytes + std::size_t{first->struct_size} * index), name);
+    const std::size_t size = first->struct_size;
+    return read(reinterpret_cast<const T*>(bytes + size * index), name, size);
 }
 template <class T>
 [[nodiscard]] Result<std::vector<T>> read_all(const T* first, std::uint32_t count, std::string_view name) {

@@ -5,7 +5,7 @@
 #include "c/objects.hpp"
 
 DarkroomEffectObject::DarkroomEffectObject(const darkroom::EffectInfo& description)
-    : info(&description), name(description.name), doc(description.doc) {
+    : info(&description), owner(description.owner.lock()), name(description.name), doc(description.doc) {
     for (const darkroom::EffectFile& file : description.files)
         if (file.name.ends_with(".md")) page = file.text;
     // Of the final size before anything points into it.

@@ -49,8 +49,10 @@ Result<> image_of(const DarkroomImage* given, ImageRef& out) {
 Result<> light_of(const DarkroomLight& given, Light& out) {
     out = {};
     out.direction = triple_or(given.direction, out.direction);
-    out.color = triple_or(given.color, out.color);
-    out.volumetric_color = triple_or(given.volumetric_color, out.volumetric_color);
+    const bool has_colors = given.has_colors != 0;
+    out.color = triple_or(given.color, has_colors ? std::array<float, 3>{} : out.color);
+    out.volumetric_color =
+        triple_or(given.volumetric_color, has_colors ? std::array<float, 3>{} : out.volumetric_color);
     out.volumetric_intensity = given.volumetric_intensity;
     out.cascade_count = given.cascade_count;
     for (std::size_t i = 0; i < Light::max_cascades; ++i) {
@@ -234,7 +236,7 @@ Result<EntryDesc> entry_desc_of(const DarkroomEntryDesc& given) {
                      .name = string(given.name),
                      .output = string(given.output),
                      .enabled = given.is_disabled == 0,
-                     .opacity = number_or(given.opacity, 1),
+                     .opacity = given.has_opacity != 0 ? given.opacity : number_or(given.opacity, 1),
                      .blend = *blend,
                      .scale = {std::max(given.scale_numerator, 1u), std::max(given.scale_denominator, 1u)},
                      .format = given.format};

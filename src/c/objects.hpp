@@ -19,6 +19,7 @@ struct DarkroomEffectObject {
     DarkroomEffectObject(const DarkroomEffectObject&) = delete;
     DarkroomEffectObject& operator=(const DarkroomEffectObject&) = delete;
     const darkroom::EffectInfo* info;
+    std::shared_ptr<const void> owner;  ///< of a custom effect, so that no other one comes to its place
     std::string name, doc, page;
     struct Row {
         std::string name, doc, unit;

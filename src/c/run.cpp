@@ -51,6 +51,16 @@ DarkroomResult darkroom_composer_pending(DarkroomComposer composer, VkBool32* is
     });
 }
 
+DarkroomResult darkroom_composer_coming_plan(DarkroomComposer composer, DarkroomPlan* plan) {
+    return call("darkroom_composer_coming_plan", [&]() -> Result<> {
+        if (auto ok = needs("composer", composer, "plan", plan); !ok) return ok;
+        const Plan* const coming = composer->composer.coming_plan();
+        *plan = nullptr;
+        if (coming != nullptr) give(*coming, plan);
+        return {};
+    });
+}
+
 DarkroomResult darkroom_composer_current_plan(DarkroomComposer composer, DarkroomPlan* plan) {
     return call("darkroom_composer_current_plan", [&]() -> Result<> {
         if (auto ok = needs("composer", composer, "plan", plan); !ok) return ok;

@@ -217,6 +217,12 @@ DarkroomResult darkroom_composer_info(DarkroomComposer composer, DarkroomHandle 
         if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
         if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
         const EffectInfo& info = *composer->composer.info(handle_of(handle));
+        const auto is_used = [&](const EffectInfo* custom) {
+            for (std::size_t i = 0; i < composer->composer.size(); ++i)
+                if (composer->composer.info(composer->composer.entry(i)) == custom) return true;
+            return false;
+        };
+        std::erase_if(composer->custom_effects, [&](const auto& kept) { return !is_used(kept.first); });
         DarkroomEffect found = effect_of(info);
         if (found == nullptr) {
             auto& own = composer->custom_effects[&info];
@@ -243,6 +249,7 @@ DarkroomResult darkroom_composer_desc(DarkroomComposer composer, DarkroomHandle 
         out.name = entry.name.c_str();
         out.output = entry.output.c_str();
         out.opacity = entry.opacity;
+        out.has_opacity = VK_TRUE;
         out.is_ui = entry.is_ui;
         out.is_disabled = !entry.enabled;
         out.scale_numerator = entry.scale.numerator;

@@ -2,6 +2,9 @@
 // The C interface without a driver: stacks, values, plans, looks and errors, held against the C++ interface.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -386,7 +389,8 @@ TEST(CInterface, ObjectsGoInAnyOrder) {
     auto entry = sized<DarkroomEntryDesc>();
     entry.name = name.c_str();
     DarkroomHandle handle = 0;
-    ASSERT_EQ(darkroom_composer_add_effect(composer, darkroom_custom_effect_info(custom), &entry, &handle), DARKROOM_OK);
+    ASSERT_EQ(darkroom_composer_add_effect(composer, darkroom_custom_effect_info(custom), &entry, &handle),
+              DARKROOM_OK);
     darkroom_device_destroy(device);
     darkroom_custom_effect_destroy(custom);
     name = "gone";
@@ -531,6 +535,84 @@ TEST(CInterface, Looks) {
     EXPECT_EQ(std::string_view(darkroom_error()).find("darkroom_look_parse: c.toml:1"), 0u) << darkroom_error();
     darkroom_look_destroy(look);
     darkroom_look_destroy(other);
+}
+
+// Hot reload: a description that went leaves its place to another one.
+TEST(CInterface, ACustomEffectIsWhatItIsAndNotWhatWasThereBefore) {
+    const CStack stack;
+    for (int i = 0; i < 8; ++i) {
+        const std::string name = fmt::format("mine{}", i);
+        const std::string text = fmt::format(
+            "// @effect {0}: Number {1}.\n{2}vec4 {0}(vec4 color, Pixel pixel, Mine{1} parameters) {{ return color; "
+            "}}\n",
+            name, i, i % 2 != 0 ? "// @param float amount = 1 in [0, 1]: Amount.\n" : "");
+        DarkroomCustomEffect custom = nullptr;
+        ASSERT_EQ(darkroom_custom_effect_parse(text.c_str(), "mine.glsl", &custom), DARKROOM_OK) << darkroom_error();
+        DarkroomHandle handle = 0;
+        ASSERT_EQ(darkroom_composer_add_effect(stack.composer, darkroom_custom_effect_info(custom), nullptr, &handle),
+                  DARKROOM_OK);
+        darkroom_custom_effect_destroy(custom);
+        DarkroomEffect effect = nullptr;
+        ASSERT_EQ(darkroom_composer_info(stack.composer, handle, &effect), DARKROOM_OK);
+        auto info = sized<DarkroomEffectInfo>();
+        ASSERT_EQ(darkroom_effect_info(effect, &info), DARKROOM_OK);
+        EXPECT_EQ(info.name, name);
+        EXPECT_EQ(info.parameter_count, static_cast<std::uint32_t>(i % 2));
+        ASSERT_EQ(darkroom_composer_remove(stack.composer, handle), DARKROOM_OK);
+    }
+}
+
+TEST(CInterface, TheSizeOfTheFirstOfAnArrayIsThatOfAll) {
+    const CStack stack;
+    const DarkroomHandle bloom = stack.add("bloom");
+    const auto half = std::bit_cast<std::uint32_t>(0.5f);
+    std::array<DarkroomLayerValue, 2> values{};
+    values[0] = {.struct_size = sizeof(DarkroomLayerValue), .word_count = 1, .entry = bloom, .parameter = "intensity"};
+    values[1] = {.word_count = 1, .entry = bloom, .parameter = "opacity"};
+    for (DarkroomLayerValue& value : values) value.words = &half;
+    auto layer = sized<DarkroomLayerDesc>();
+    layer.name = "soft";
+    layer.value_count = values.size();
+    layer.values = values.data();
+    EXPECT_EQ(darkroom_composer_add_layer(stack.composer, &layer), DARKROOM_OK) << darkroom_error();
+}
+
+TEST(CInterface, ZeroIsMeantWhereItIsSaid) {
+    const CStack stack;
+    const DarkroomHandle vignette = stack.add("vignette");
+    ASSERT_EQ(darkroom_composer_set_opacity(stack.composer, vignette, 0), DARKROOM_OK);
+    auto desc = sized<DarkroomEntryDesc>();
+    ASSERT_EQ(darkroom_composer_desc(stack.composer, vignette, &desc), DARKROOM_OK);
+    ASSERT_EQ(darkroom_composer_rewire(stack.composer, vignette, &desc), DARKROOM_OK) << darkroom_error();
+    ASSERT_EQ(darkroom_composer_desc(stack.composer, vignette, &desc), DARKROOM_OK);
+    EXPECT_EQ(desc.opacity, 0);
+    auto light = sized<DarkroomLight>();
+    auto frame = sized<DarkroomFrame>();
+    frame.light_count = 1;
+    frame.lights = &light;
+    for (const bool is_meant : {false, true}) {
+        light.has_colors = is_meant;
+        const auto read = c::frame_of(&frame, *stack.composer);
+        ASSERT_TRUE(read) << read.error().text;
+        const Light& made = read->lights[0];
+        EXPECT_EQ(made.color, (is_meant ? std::array{0.0f, 0.0f, 0.0f} : std::array{1.0f, 1.0f, 1.0f}));
+        EXPECT_EQ(made.volumetric_color, made.color);
+    }
+}
+
+TEST(CInterface, APlanTellsAHostHowItsImagesAreUsed) {
+    const CStack stack;
+    stack.add("tonemap");
+    const std::string json = stack.plan();
+    const std::size_t color = json.find("{\"name\": \"color\"");
+    ASSERT_NE(color, std::string::npos);
+    const std::string line = json.substr(color, json.find('}', color) - color);
+    EXPECT_NE(line.find("\"layout\": 5, \"final_layout\": 5"), std::string::npos) << line;
+    EXPECT_NE(line.find("\"stages\": 128, "), std::string::npos) << "in a fragment shader: " << line;
+    EXPECT_NE(line.find("\"access\": 4294967296, "), std::string::npos) << "sampled: " << line;
+    DarkroomPlan coming = nullptr;
+    EXPECT_EQ(darkroom_composer_coming_plan(stack.composer, &coming), DARKROOM_OK);
+    EXPECT_EQ(coming, nullptr);
 }
 
 TEST(CInterface, WhatIsThrownIntoItStaysInside) {

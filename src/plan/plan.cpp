@@ -77,12 +77,18 @@ std::string json_of(const PlanImage& image) {
     const auto pass = [](std::uint32_t number) {
         return number == PlanImage::never ? std::string("null") : fmt::to_string(number);
     };
+    // As Vulkan numbers them: a host hands them on.
+    const std::string uses =
+        image.kind != PlanImage::Kind::Host
+            ? std::string{}
+            : fmt::format(", \"stages\": {}, \"access\": {}, \"layout\": {}, \"final_layout\": {}", image.stages,
+                          image.access, static_cast<int>(image.layout), static_cast<int>(image.final_layout));
     return fmt::format(
         "{{\"name\": {}, \"kind\": \"{}\", \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mip_levels\": {}, "
-        "\"bytes\": {}, \"offset\": {}, \"first_pass\": {}, \"last_pass\": {}}}",
+        "\"bytes\": {}, \"offset\": {}, \"first_pass\": {}, \"last_pass\": {}{}}}",
         json_string(image.name), name_of(image.kind), gpu::format_name(image.format), image.extent.width,
-        image.extent.height, image.mip_levels, image.bytes, image.offset, pass(image.first_pass),
-        pass(image.last_pass));
+        image.extent.height, image.mip_levels, image.bytes, image.offset, pass(image.first_pass), pass(image.last_pass),
+        uses);
 }
 
 /// The items of a list, a line each.
