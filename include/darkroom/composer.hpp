@@ -212,8 +212,8 @@ class Composer {
     void drop_overrides(std::string_view owner);
     /// The values at the time and from the camera of the last record; empty: the handle names no entry.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
-    /// The same at any time and from any camera, and what layers make of the entry's `enabled` and `opacity`. An opacity
-    /// between 0 and 1 that the plan there is cannot show is 1 until the stack is compiled again.
+    /// The same at any time and from any camera, and what layers make of the entry's `enabled` and `opacity`. An
+    /// opacity between 0 and 1 that the plan there is cannot show is 1 until the stack is compiled again.
     struct EntryValues {
         std::vector<std::uint32_t> words;
         bool is_enabled = true;
@@ -235,7 +235,7 @@ class Composer {
     /// how many there are. Allocates nothing.
     std::size_t fire(std::string_view event, std::optional<double> time = std::nullopt);
     /// Errors: a name that another layer has, no values, one that is out of range, a distance that is none. One that
-    /// moves an opacity which set_opacity() would refuse shows it with the next compile; the device's log says so.
+    /// moves an opacity which set_opacity() would refuse shows it with the next compile; a message of the log says so.
     Result<> add_layer(const LayerDesc& desc);
     /// Of a layer: from 0, where it changes nothing, to 1, where its values replace the base. Refused outside of that.
     Result<> set_layer_weight(std::string_view name, float weight);

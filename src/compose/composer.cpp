@@ -82,8 +82,16 @@ Result<> check_part(std::string_view name, std::uint64_t size, std::uint64_t mos
     return user_error(fmt::format("{} of {} entries: {} numbers are given; allowed is {}", name, size, values, wanted));
 }
 
-Result<> check_resource(const ResourceData& data) {
-    constexpr std::uint64_t longest = 65536, widest = 256, largest = 16384;
+Result<> check_domain(std::string_view name, const std::array<float, 3>& min, const std::array<float, 3>& max) {
+    for (std::size_t i = 0; i < min.size(); ++i)
+        if (!(std::isfinite(min[i]) && std::isfinite(max[i]) && min[i] < max[i]))
+            return user_error(fmt::format(
+                "{} from {} to {}: allowed is a finite domain that ends above where it begins", name, min[i], max[i]));
+    return {};
+}
+
+Result<> check_resource(const ResourceData& data, std::uint64_t largest) {
+    constexpr std::uint64_t longest = 65536, widest = 256;
     if (const auto* const image = std::get_if<ResourceImage>(&data)) {
         if (image->width == 0 || image->height == 0 || image->width > largest || image->height > largest)
             return user_error(fmt::format("a picture of {}x{}: allowed is 1x1 to {}x{}", image->width, image->height,
@@ -92,6 +100,8 @@ Result<> check_resource(const ResourceData& data) {
         return check_part("a picture", pixels, pixels, image->rgba.size(), 4 * pixels);
     }
     const auto& table = std::get<ColorTable>(data);
+    if (auto ok = check_domain("a shaper", table.shaper_min, table.shaper_max); table.shaper_size > 0 && !ok) return ok;
+    if (auto ok = check_domain("a cube", table.min, table.max); table.size > 0 && !ok) return ok;
     if (auto ok = check_part("a shaper", table.shaper_size, longest, table.shaper.size(),
                              std::uint64_t{3} * table.shaper_size);
         !ok)
@@ -101,6 +111,16 @@ Result<> check_resource(const ResourceData& data) {
 }
 
 }  // namespace
+
+Result<> check_mixing(const EntryDesc& desc) {
+    if (!(desc.opacity >= 0 && desc.opacity <= 1))
+        return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", desc.name, desc.opacity));
+    if (desc.blend > BlendMode::SoftLight)
+        return user_error(fmt::format("{}: blend = {}: allowed is 0 to {}", desc.name,
+                                      static_cast<std::uint32_t>(desc.blend),
+                                      static_cast<std::uint32_t>(BlendMode::SoftLight)));
+    return {};
+}
 
 Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> words) {
     for (const ParamInfo& row : entry.info->parameters.rows)
@@ -228,6 +248,7 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
     own.is_ui = (*entry)->desc.is_ui;
     own.enabled = (*entry)->desc.enabled;
     if (own.name.empty()) own.name = (*entry)->desc.name;
+    if (auto ok = check_mixing(own); !ok) return ok;
     std::swap((*entry)->desc, own);
     return {};
 } catch (...) {
@@ -237,7 +258,8 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
 void Composer::clear() { state_->stack.clear(); }
 
 Result<Resource> Composer::define(ResourceData data) try {
-    if (auto ok = check_resource(data); !ok) return failure(std::move(ok));
+    if (auto ok = check_resource(data, std::min(16384u, state_->context->traits.max_image_dimension)); !ok)
+        return failure(std::move(ok));
     const Resource out{next_id()};
     // Plans under way keep the map they began with.
     Resources all = *state_->resources;

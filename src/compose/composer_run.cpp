@@ -98,6 +98,7 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
         out.values.push_back(*entry);
         out.values.back().resources = resources;
         if (auto ok = check_resources(out.values.back()); !ok) return failure(std::move(ok));
+        if (auto ok = check_mixing(entry->desc); !ok) return failure(std::move(ok));
         const OutputScale& scale = entry->desc.scale;
         if (scale.numerator == 0 || scale.denominator == 0)
             return user_error(fmt::format("stack entry '{}': scale {}/{}: allowed are numbers above 0",
@@ -109,6 +110,7 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
 }
 
 Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot snapshot) {
+    const std::shared_ptr<compose::StackProgram> older = program;
     if (!program || !program->serves(snapshot.values, snapshot.desc)) {
         auto planned = compose::plan_stack(*context, snapshot.values, snapshot.desc);
         if (!planned) return failure(std::move(planned));
@@ -116,6 +118,8 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
     }
     auto made = compose::Chain::create(*context, *worker, histories,
                                        {.program = program,
+                                        .older = older,
+                                        .clock = &clock,
                                         .compile = snapshot.desc,
                                         .slots = desc.frames_in_flight * snapshot.desc.views,
                                         .max_threads = threads_of(desc),
@@ -133,7 +137,7 @@ void Composer::State::take_ready(const Frame& frame) {
         const std::unique_lock lock(pending_mutex, std::try_to_lock);
         if (!lock || !ready || (asks_first && !is_told)) return;
         // Formats and extents change on both sides, and the host's images may come later than the plan.
-        if (chain && !ready->fits(frame) && chain->fits(frame)) return;
+        if (chain && !ready->fits(frame, chain->compiled_for()) && chain->fits(frame, chain->compiled_for())) return;
         newer = std::move(ready);
     }
     take(std::move(newer));
@@ -225,8 +229,7 @@ std::optional<CompileDesc> Composer::State::last_desc() const {
 
 bool Composer::State::is_mixable(const plan::Entry& entry) const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready) && later && std::ranges::count(later->unmixed, entry.id) > 0)
-        return false;
+    if ((is_compiling || ready) && later && std::ranges::count(later->unmixed, entry.id) > 0) return false;
     const auto place = chain ? chain->index_of(entry.id) : std::nullopt;
     return !place || chain->program()->program.is_mixable[*place];
 }

@@ -12,6 +12,8 @@
 
 namespace darkroom {
 
+/// How its result goes over its input: a struct that a host filled may hold anything.
+[[nodiscard]] Result<> check_mixing(const EntryDesc& desc);
 /// All values of an entry, and what they are together: a struct that a host filled may hold anything.
 [[nodiscard]] Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> words);
 
@@ -71,6 +73,7 @@ struct Composer::State {
     std::vector<std::shared_ptr<plan::Entry>> stack;
     std::shared_ptr<const Resources> resources = std::make_shared<Resources>();
 
+    compose::Clock clock;
     std::unique_ptr<compose::Chain> chain;
     compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned
     double record_microseconds = 0;
@@ -91,9 +94,9 @@ struct Composer::State {
     std::optional<Later> later;
     bool is_compiling = false;
     std::optional<Error> pending_error;
-    std::unique_ptr<compose::Chain> ready;           ///< for record() to take
-    bool is_told = false;                            ///< has coming_plan() shown it?
-    bool asks_first = false;                         ///< does the host ask for it?
+    std::unique_ptr<compose::Chain> ready;  ///< for record() to take
+    bool is_told = false;                   ///< has coming_plan() shown it?
+    bool asks_first = false;                ///< does the host ask for it?
 
     std::unique_ptr<compose::Worker> worker;
 };

@@ -75,9 +75,10 @@ TEST_F(ComposeSmallestDevice, SaysInOneLineWhatIsMissing) {
     EXPECT_EQ(
         error({.max_extent = {16, 16}, .target = {VK_FORMAT_B10G11R11_UFLOAT_PACK32, target}}),
         "compile: target.format = B10G11R11_UFLOAT_PACK32: allowed are colour formats that this device can render "
-        "to or store; depth and block-compressed ones are none");
+        "to or store; depth, integer and block-compressed ones are none");
     EXPECT_EQ(error({.max_extent = {16, 16}, .color = {VK_FORMAT_R16G16B16A16_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT}}),
-              "compile: color.format = R16G16B16A16_UNORM: allowed are formats that this device can sample");
+              "compile: color.format = R16G16B16A16_UNORM: allowed are formats that this device can sample, "
+              "and none of integers");
 }
 
 }  // namespace

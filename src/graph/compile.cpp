@@ -332,6 +332,10 @@ class Compiler {
         std::vector<std::uint32_t> owners;
         for (std::uint32_t index = 0; index < solution_->slots.size(); ++index) {
             Slot& slot = solution_->slots[index];
+            if (slot.kind == Slot::Kind::History) {  // its memory is the pool's; whether there can be one is asked here
+                if (auto measured = measure(slot.desc, slot.usage, largest_); !measured)
+                    return failure(std::move(measured));
+            }
             if (slot.kind != Slot::Kind::Transient) continue;
             if (slot.desc.is_buffer()) {
                 // No device asks for more than 256 between storage or uniform buffers.

@@ -60,7 +60,9 @@ void remark_target(const Program& program, const FrameValues& values, const Colo
     if (target.domain != Domain::Encoded) return;
     const ColorState last = values.last_state(program);
     const auto by = [&](auto member) -> std::string_view {
-        for (std::uint32_t i = program.last_entry; i < entries.size(); i = program.entry_inputs[i])
+        std::size_t steps = 0;
+        for (std::uint32_t i = program.last_entry; i < entries.size() && steps < entries.size();
+             i = program.entry_states[i], ++steps)
             if (values.state_after(i).*member != values.state_before(program, i).*member) return entries[i]->desc.name;
         return "the scene";
     };

@@ -190,12 +190,17 @@ struct ProgramPass {
     }
 };
 
-/// A table, or a neutral image that stands in for a version: uploaded once, constant after. A neutral image may be
-/// sampled and loaded.
+/// A table, a picture of the host, or a neutral image that stands in for a version: uploaded once, constant after. A
+/// neutral image may be sampled and loaded.
 struct FixedImage {
     TableDesc desc;
-    std::uint32_t import_index = ~0u;  ///< in the graph; tables have none
+    std::shared_ptr<const ResourceData> picture{};  ///< of the host, which holds the texels in place of `desc`
+    std::uint32_t import_index = ~0u;               ///< in the graph; tables have none
 };
+[[nodiscard]] inline std::span<const std::byte> texels_of(const FixedImage& fixed) {
+    if (!fixed.picture) return fixed.desc.data;
+    return std::as_bytes(std::span(std::get<ResourceImage>(*fixed.picture).rgba));
+}
 
 /// Which import of the graph is which image of the host.
 struct HostImage {
@@ -220,8 +225,9 @@ struct Program {
     std::vector<FixedImage> fixed_images;
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a fixed image
     std::vector<std::uint32_t> entry_inputs;        ///< per entry: whose output it gets, past what is left out
-    std::uint32_t last_entry = no_entry;            ///< whose output the target gets
-    std::vector<graph::Size> entry_sizes;           ///< per entry: of the picture that it gets
+    std::vector<std::uint32_t> entry_states;  ///< per entry: as what its picture comes; of an earlier frame's, too
+    std::uint32_t last_entry = no_entry;      ///< whose output the target gets
+    std::vector<graph::Size> entry_sizes;     ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t>
         history_entries;  ///< per history of the graph: the entry that is told what it holds; no_entry: none

@@ -49,7 +49,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
                               .camera = &camera,
                               .lights = frame.lights};
     StackProgram& program = *desc_.program;
-    program.most_unfinished = std::max(program.most_unfinished, desc_.slots);
+    Clock& clock = *desc_.clock;
+    clock.most_unfinished = std::max(clock.most_unfinished, desc_.slots);
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
     view_index_ = frame.view;
     is_abandonable_ = false;
@@ -66,14 +67,16 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
             prepare_pass(declared_pass_[step.pass], frame, context);
 
     // Effects have had their say: nothing of what follows fails.
-    program.tables->upload(commands, program.recordings);
-    program.lit.upload(commands, program.recordings);
-    if (auto* const staging = program.tables->spent_staging(program.recordings, program.most_unfinished))
+    program.tables->upload(commands, clock.recordings);
+    program.lit.upload(commands, clock.recordings);
+    if (auto* const staging = program.tables->spent_staging(clock.recordings, clock.most_unfinished))
         worker_.discard(*staging);
     value_copies_.begin(slot_);
     physical_->begin(commands, context_.vk, *schedule_, frame.view);
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
     if (is_timed) {
+        // Which queries are a finished recording's, a device that resets none at once tells when the slot comes round.
+        if (!timers_.is_reset && recordings_ >= desc_.slots) static_cast<void>(read_times(slot_));
         timed_[slot_].frame_index = frame.frame_index;
         timed_[slot_].passes.clear();
         timers_.begin(commands, slot_);
@@ -97,7 +100,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     leave_unused(commands, frame);
     physical_->end(*schedule_, frame.view);
     ++recordings_;
-    ++program.recordings;
+    ++clock.recordings;
     is_abandonable_ = true;
     return {};
 }
@@ -106,10 +109,11 @@ bool Chain::abandon() {
     if (!is_abandonable_) return false;
     is_abandonable_ = false;
     --recordings_;
-    --desc_.program->recordings;
-    desc_.program->tables->take_back(desc_.program->recordings);
-    desc_.program->lit.take_back(desc_.program->recordings);
+    --desc_.clock->recordings;
+    desc_.program->tables->take_back(desc_.clock->recordings);
+    desc_.program->lit.take_back(desc_.clock->recordings);
     value_copies_.take_back(slot_);
+    if (!timed_.empty()) timed_[slot_].passes.clear();
     physical_->abandon(view_index_);
     return true;
 }
@@ -153,9 +157,8 @@ void Chain::lend_images(const Frame& frame) {
 /// Images that the frame brings and the plan does not know: left as the host asks for, too.
 void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
     const auto is_used = [&](const ImageRef& image) {
-        return std::ranges::any_of(program_of().imports, [&](const auto& which) {
-            return which && overlap(image_of(frame, *which), image);
-        });
+        return std::ranges::any_of(program_of().imports,
+                                   [&](const auto& which) { return which && overlap(image_of(frame, *which), image); });
     };
     const auto leave = [&](const ImageRef& image) {
         if (image.image == VK_NULL_HANDLE || is_used(image)) return;
@@ -312,8 +315,8 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
                                     std::span<const gpu::Binding> inputs) {
     PassKernels& kernels = *desc_.program->kernels[pass];
     last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
-    if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], desc_.program->recordings,
-                                                       desc_.program->most_unfinished))
+    if (const gpu::Kernel* const kernel =
+            kernels.find(last_shapes_[pass], desc_.clock->recordings, desc_.clock->most_unfinished))
         return *kernel;
     worker_.want(kernels, last_shapes_[pass]);
     return kernels.complete();
@@ -423,22 +426,22 @@ ValueReading Chain::value(std::string_view name, std::uint32_t view) const {
     return value_copies_.find(static_cast<std::size_t>(found - values.begin()), view);
 }
 
+bool Chain::read_times(std::uint32_t slot) {
+    const Timed& timed = timed_[slot];
+    if (timed.passes.empty() ||
+        timers_.read(slot, static_cast<std::uint32_t>(timed.passes.size() + 1), milliseconds_) < timed.passes.size())
+        return false;
+    times_.clear();
+    for (std::size_t i = 0; i < timed.passes.size(); ++i)
+        times_.push_back({program_of().passes[timed.passes[i]].name, milliseconds_[i]});
+    times_frame_ = timed.frame_index;
+    return true;
+}
+
 RecordingTimes Chain::times() {
-    if (timers_.pool == VK_NULL_HANDLE) return {};
-    for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(desc_.slots, recordings_); ++back) {
-        const auto slot = static_cast<std::uint32_t>((recordings_ - back) % desc_.slots);
-        const Timed& timed = timed_[slot];
-        // Of its first recording is not known that it has finished before another one takes its place.
-        if (!timers_.is_reset && recordings_ <= slot + desc_.slots) continue;
-        if (timers_.read(slot, static_cast<std::uint32_t>(timed.passes.size() + 1), milliseconds_) <
-            timed.passes.size())
-            continue;
-        times_.clear();
-        for (std::size_t i = 0; i < timed.passes.size(); ++i)
-            times_.push_back({program_of().passes[timed.passes[i]].name, milliseconds_[i]});
-        return {timed.frame_index, times_};
-    }
-    return {};
+    for (std::uint64_t back = 1; timers_.is_reset && back <= std::min<std::uint64_t>(desc_.slots, recordings_); ++back)
+        if (read_times(static_cast<std::uint32_t>((recordings_ - back) % desc_.slots))) break;
+    return {times_frame_, times_};
 }
 
 }  // namespace darkroom::compose

@@ -21,6 +21,8 @@ namespace darkroom::compose {
 
 struct ChainDesc {
     std::shared_ptr<StackProgram> program;
+    std::shared_ptr<const StackProgram> older{};  ///< the program before, while this is made; may be null
+    Clock* clock = nullptr;                       ///< of the composer
     CompileDesc compile;
     std::uint32_t slots = 1;        ///< recordings that may be unfinished
     std::uint32_t max_threads = 0;  ///< that build kernels; 0: one a processor
@@ -39,7 +41,9 @@ class Chain final : public Garbage {
     /// Allocates nothing and waits for nothing. On error nothing is recorded.
     [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame);
     /// Are its images in the formats, and no larger than the extents, that this was compiled for?
-    [[nodiscard]] bool fits(const Frame& frame) const { return compose::fits(program_of(), desc_.compile, frame); }
+    [[nodiscard]] bool fits(const Frame& frame, const CompileDesc& before) const {
+        return compose::fits(program_of(), desc_.compile, frame, before);
+    }
     /// Takes back the last recording. False: there is none, or it was taken back.
     bool abandon();
     /// Builds the lean kernels of the present values on the calling thread, which is the one that records.
@@ -92,6 +96,8 @@ class Chain final : public Garbage {
     /// Writes a pass's block and descriptors: all that may fail, before there is any command.
     void prepare_pass(std::uint32_t pass, const Frame& frame, const PassContext& context);
     void record_pass(VkCommandBuffer commands, std::uint32_t pass);
+    /// True: what was recorded in the slot has finished, and its times are in times_.
+    bool read_times(std::uint32_t slot);
     void record_value_copies(VkCommandBuffer commands, const Frame& frame);
 
     gpu::Context& context_;
@@ -160,6 +166,7 @@ class Chain final : public Garbage {
     std::vector<Timed> timed_;
     std::vector<double> milliseconds_;
     std::vector<PassTime> times_;
+    std::uint64_t times_frame_ = 0;
 };
 
 }  // namespace darkroom::compose

@@ -51,9 +51,11 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
     if (!compiled) return failure(std::move(compiled));
     chain->compiled_.emplace(std::move(*compiled));
     chain->schedule_.emplace(*chain->compiled_);
-    if (auto ok = chain->desc_.program->make_tables(context); !ok) return failure(std::move(ok));
+    if (auto ok = chain->desc_.program->make_tables(context, chain->desc_.older.get()); !ok)
+        return failure(std::move(ok));
     if (auto ok = chain->make_kernels(values); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_resources(histories); !ok) return failure(std::move(ok));
+    chain->desc_.older.reset();
     chain->plan_ = plan::describe_program(program, *chain->compiled_, chain->desc_.compile, pointers_to(values));
     return chain;
 }
@@ -124,7 +126,7 @@ Result<> Chain::build_lean() {
         PassKernels& kernels = *desc_.program->kernels[i];
         for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
             const auto is_there = [&] {
-                return kernels.find(shape, desc_.program->recordings, desc_.program->most_unfinished) != nullptr;
+                return kernels.find(shape, desc_.clock->recordings, desc_.clock->most_unfinished) != nullptr;
             };
             if (is_there()) continue;
             if (auto ok = kernels.build(context_, shape); !ok) return ok;

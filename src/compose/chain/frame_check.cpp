@@ -227,18 +227,23 @@ Result<> check_overlaps(const AllGiven& all, const CompileDesc& desc) {
     return {};
 }
 
+/// Shaders sample and write numbers, no integers.
+bool is_integer(VkFormat format) { return gpu::format_traits(format).numeric != gpu::Numeric::Float; }
+
 Result<> check_input(const gpu::Context& context, std::string_view name, const ImageUse& use) {
     if ((use.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0)
         return user_error(fmt::format("compile: {}.usage = {:#x}: allowed are usages with SAMPLED", name, use.usage));
-    if (!context.supports(use.format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
-        return user_error(fmt::format("compile: {}.format = {}: allowed are formats that this device can sample", name,
-                                      gpu::format_name(use.format)));
+    if (is_integer(use.format) || !context.supports(use.format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
+        return user_error(fmt::format(
+            "compile: {}.format = {}: allowed are formats that this device can sample, and none of integers", name,
+            gpu::format_name(use.format)));
     return {};
 }
 
 Result<> check_target(const gpu::Context& context, const std::string& name, const ImageUse& use) {
     // Some devices store to depth formats; a shader of ours declares an image of colour.
-    const bool is_color = gpu::format_traits(use.format).aspects == VK_IMAGE_ASPECT_COLOR_BIT;
+    const bool is_color =
+        gpu::format_traits(use.format).aspects == VK_IMAGE_ASPECT_COLOR_BIT && !is_integer(use.format);
     const auto supports = [&](VkFormatFeatureFlags features) {
         return is_color && context.supports(use.format, features);
     };
@@ -247,7 +252,7 @@ Result<> check_target(const gpu::Context& context, const std::string& name, cons
     if (use.format == VK_FORMAT_UNDEFINED || (!can_attach && !can_store))
         return user_error(
             fmt::format("compile: {}.format = {}: allowed are colour formats that this device can render to or "
-                        "store; depth and block-compressed ones are none",
+                        "store; depth, integer and block-compressed ones are none",
                         name, gpu::format_name(use.format)));
     const bool is_attached = (use.usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0;
     const bool is_stored = (use.usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
@@ -312,7 +317,7 @@ std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id)
     return static_cast<std::size_t>(found - desc.watches.begin());
 }
 
-bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
+bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& frame, const CompileDesc& before) {
     const auto is_within = [](const ImageRef& image, VkExtent2D most) {
         const VkExtent2D extent = image.used_region().extent;
         return is_empty(most) || (extent.width <= most.width && extent.height <= most.height);
@@ -321,7 +326,10 @@ bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& fr
     return std::ranges::all_of(program.imports, [&](const auto& which) {
         if (!which || which->kind == Kind::Shadow || which->kind == Kind::Watched) return true;
         const ImageRef& image = host_image(frame, *which);
-        return image.is_given() && image.format == use_of(desc, {.which = *which}).format;
+        // One that a host has forgotten is an error, and nothing to wait for.
+        const Given given{.which = *which};
+        return image.is_given() ? image.format == use_of(desc, given).format
+                                : use_of(before, given).format != VK_FORMAT_UNDEFINED;
     });
 }
 

@@ -27,8 +27,9 @@ namespace darkroom::compose {
 /// Which of CompileDesc::watches has this number; none.
 [[nodiscard]] std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id);
 
-/// Is the frame for this plan, and for none of other formats or extents?
-[[nodiscard]] bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& frame);
+/// Is the frame for this plan, and for none of other formats or extents, or of images that `before` did not have?
+[[nodiscard]] bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& frame,
+                        const CompileDesc& before);
 
 /// Is every image that the program reads or writes given as it was compiled for? Allocates nothing, but for an error.
 [[nodiscard]] Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame);

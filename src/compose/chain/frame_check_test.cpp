@@ -4,6 +4,7 @@
 
 #include "compose/test_stacks/host.hpp"
 #include "compose/test_stacks/shadow_map.hpp"
+#include "gpu/resource/formats.hpp"
 
 namespace darkroom {
 namespace {
@@ -308,6 +309,32 @@ TEST_F(ComposeFrameCheck, CompileRefusesImagesThatNoFrameCanBring) {
         desc.depth.format = format;
         test::must(composer.compile(desc));
     }
+}
+
+// Shaders sample and write floats: of integers they would make a picture of zeros.
+TEST_F(ComposeFrameCheck, IntegersAreNoPictures) {
+    Composer planned(Device::assumed());
+    test::add(planned, "tonemap");
+    const auto error = [&](const CompileDesc& desc) {
+        const auto plan = planned.plan(desc);
+        return plan ? std::string("none") : plan.error().text;
+    };
+    for (const VkFormat format : {VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_R8G8B8A8_SINT, VK_FORMAT_R32_UINT}) {
+        const std::string name(gpu::format_name(format));
+        EXPECT_EQ(
+            error({.max_extent = {64, 32}, .color = {format}}),
+            fmt::format("compile: color.format = {}: allowed are formats that this device can sample, and none of "
+                        "integers",
+                        name));
+        EXPECT_NE(error({.max_extent = {64, 32}, .normals = {format}}).find("compile: normals.format = " + name),
+                  std::string::npos);
+        EXPECT_EQ(
+            error({.max_extent = {64, 32}, .target = {format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}}),
+            fmt::format("compile: target.format = {}: allowed are colour formats that this device can render to or "
+                        "store; depth, integer and block-compressed ones are none",
+                        name));
+    }
+    EXPECT_EQ(error({.max_extent = {64, 32}}), "none");
 }
 
 }  // namespace

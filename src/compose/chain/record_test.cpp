@@ -222,8 +222,7 @@ TEST_F(ComposeRecord, FramesAllocateCreateAndWaitForNothing) {
 
 // Every lock of a std::mutex is one of these; a try to lock is not.
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-    static const auto original =
-        reinterpret_cast<int (*)(pthread_mutex_t*)>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
+    static const auto original = reinterpret_cast<int (*)(pthread_mutex_t*)>(dlsym(RTLD_NEXT, "pthread_mutex_lock"));
     if (darkroom::is_in_frame) ++darkroom::locks;
     return original(mutex);
 }
@@ -421,6 +420,32 @@ TEST_F(ComposeRecord, AResizeUploadsNoTableAgain) {
     EXPECT_EQ(uploaded({160, 120}), 0u);
 }
 
+// A picture of the host and a table go on through edits; what is new comes by itself.
+TEST_F(ComposeRecord, AnEditUploadsNoTableAgain) {
+    Composer composer(*device, {.frames_in_flight = 1});
+    const Resource picture =
+        test::must(composer.define(ResourceImage{.width = 512, .height = 300, .rgba = std::vector<float>(614400)}));
+    add(composer, "blend", {}, {.second = Composer::picture_of(picture), .opacity = 0.5f});
+    add(composer, "dither");
+    const auto uploaded = [&] {
+        test::must(composer.compile(desc()));
+        uploads = 0;
+        (void)counted([&] { (void)is_recorded(composer, frame()); });
+        return uploads;
+    };
+    const std::uint64_t first = uploaded();
+    EXPECT_GE(first, 2u);
+    test::must(composer.abandon());
+    const Handle negative_one = add(composer, "negative");
+    EXPECT_EQ(uploaded(), first) << "what the recording that was taken back uploaded is uploaded again, once";
+    for (int i = 0; i < 3; ++i) (void)counted([&] { (void)is_recorded(composer, frame()); });
+    test::must(composer.remove(negative_one));
+    EXPECT_EQ(uploaded(), 0u);
+    add(composer, "film_grain");
+    EXPECT_GT(uploaded(), 0u);
+    EXPECT_EQ(uploaded(), 0u);
+}
+
 TEST_F(ComposeRecord, AnUploadThatIsAbandonedIsMadeAgain) {
     Composer composer(*device);
     add(composer, "dither");
@@ -435,7 +460,7 @@ TEST_F(ComposeRecord, AnUploadThatIsAbandonedIsMadeAgain) {
 TEST_F(ComposeRecord, StagingOfTablesGoesOnceNoRecordingUsesIt) {
     plan::FixedImage table{.desc = {.name = "table", .data = std::vector<std::byte>(1)}};
     compose::Tables tables = test::must(compose::Tables::create(device->context(), {&table, 1}));
-    EXPECT_EQ(tables.take_staging(9, 2), nullptr) << "nothing was uploaded";
+    EXPECT_EQ(tables.spent_staging(9, 2), nullptr) << "nothing was uploaded";
     (void)counted([&] { tables.upload(VK_NULL_HANDLE, 7); });
     EXPECT_EQ(tables.spent_staging(9, 2), nullptr) << "the recording that uploaded may still run";
     auto* const staging = tables.spent_staging(10, 2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The constant images of a program: tables of effects and 1x1 neutral ones. Made at compile, uploaded by the first
-// recording, never written again.
+// The constant images of programs: tables of effects, pictures of the host and 1x1 neutral ones. Made at compile, those
+// that the program before has taken over from it, uploaded by the first recording, never written again.
 
 #include <memory>
 #include <optional>
@@ -16,10 +16,13 @@ namespace darkroom::compose {
 
 class Tables {
   public:
-    [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const plan::FixedImage> images);
+    /// `older`: of the program before, made of `older_images`; may be null.
+    [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const plan::FixedImage> images,
+                                               const Tables* older = nullptr,
+                                               std::span<const plan::FixedImage> older_images = {});
     /// The first time: copies and barriers. Later: nothing. `recording` is the number of the recording it is for.
     void upload(VkCommandBuffer commands, std::uint64_t recording);
-    /// What the upload was copied from, once no recording uses it: `recording` is the next one's number, and the last
+    /// What an upload was copied from, once no recording uses it: `recording` is the next one's number, and the last
     /// `unfinished` before it may still run. To be taken out and freed; null: nothing, or not yet.
     [[nodiscard]] std::unique_ptr<Garbage>* spent_staging(std::uint64_t recording, std::uint64_t unfinished);
     /// That recording will not be submitted: what it uploaded is uploaded again.
@@ -36,11 +39,22 @@ class Tables {
     struct Staging : Garbage {
         gpu::Buffer buffer;
     };
-    gpu::Memory memory_;  ///< of all images
-    std::vector<Table> tables_;
-    std::unique_ptr<Garbage> staging_;
-    VkBuffer staged_ = VK_NULL_HANDLE;  ///< its buffer
-    std::optional<std::uint64_t> uploaded_by_;
+    /// Images that came together; freed with the last program that has one of them.
+    struct Batch {
+        gpu::Memory memory;  ///< of all images
+        std::vector<Table> tables;
+        std::unique_ptr<Garbage> staging;
+        VkBuffer staged = VK_NULL_HANDLE;  ///< its buffer
+        std::optional<std::uint64_t> uploaded_by;
+    };
+    struct Place {
+        std::size_t batch = 0, table = 0;
+    };
+    [[nodiscard]] static Result<std::shared_ptr<Batch>> make(gpu::Context& context,
+                                                             std::span<const plan::FixedImage* const> images);
+
+    std::vector<std::shared_ptr<Batch>> batches_;
+    std::vector<Place> places_;  ///< per image
 };
 
 /// Stands in for the shadow map of a light that a frame does not have: lit everywhere.

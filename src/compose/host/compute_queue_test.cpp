@@ -85,8 +85,9 @@ TEST_F(ComposeComputeQueue, RunsWhatComputeCan) {
         ++count;
     }
     EXPECT_GT(count, 15U);
-    EXPECT_LE(refused, 5U) << "velocities, the slopes of occlusion, what taa counts, the edges of smaa and the circles of "
-                              "depth_of_field are of one or two channels";
+    EXPECT_LE(refused, 5U)
+        << "velocities, the slopes of occlusion, what taa counts, the edges of smaa and the circles of "
+           "depth_of_field are of one or two channels";
 }
 
 TEST_F(ComposeComputeQueue, NamesWhatNeedsGraphics) {
@@ -105,7 +106,7 @@ TEST_F(ComposeComputeQueue, NamesWhatNeedsGraphics) {
         "compile: target.usage = 0x10: R8G8B8A8_UNORM needs STORAGE on this device");
     EXPECT_EQ(error({.max_extent = {16, 16}, .target = {VK_FORMAT_B8G8R8A8_UNORM, VK_IMAGE_USAGE_STORAGE_BIT}}),
               "compile: target.format = B8G8R8A8_UNORM: allowed are colour formats that this device can render to or "
-              "store; depth and block-compressed ones are none");
+              "store; depth, integer and block-compressed ones are none");
     EXPECT_EQ(error({.max_extent = {16, 16}, .has_shadows = true, .target = stored}),
               "compile: has_shadows: allowed where the device's queue family has graphics");
 }

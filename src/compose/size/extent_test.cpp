@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <darkroom/custom_effect.hpp>
+
 #include "compose/test_stacks/effects.hpp"
 #include "compose/test_stacks/host.hpp"
 #include "develop/reference_chain.hpp"
@@ -260,6 +262,44 @@ TEST_F(ComposeExtent, BehindAnUpscalerAllIsOfTheOutputWhateverTheSceneIs) {
                 << "frame " << number << ", fused " << is_fused;
         }
     }
+}
+
+// A plan that serves a larger extent is asked again what it makes of it.
+TEST_F(ComposeExtent, ImagesThatTheDeviceCannotHaveAreRefused) {
+    const test::Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    const std::uint32_t most = host.device.context().traits.max_image_dimension;
+    CompileDesc small = host.compile_desc(), large = small;
+    small.max_extent = {most / 16, 4};
+    large.max_extent = {most - 8, 4};
+    const auto error = [](const auto& done) { return done ? std::string("none") : done.error().text; };
+    Composer scaled(host.device);
+    test::add(scaled, "tonemap", {}, {.scale = {4, 1}});
+    test::add(scaled, "gaussian_blur", {{"radius", 2}});
+    EXPECT_EQ(error(scaled.compile(small)), "none");
+    for (const bool is_planned : {true, false}) {
+        const std::string text = is_planned ? error(scaled.plan(large)) : error(scaled.compile(large));
+        EXPECT_NE(text.find(fmt::format("{}x16", 4 * (most - 8))), std::string::npos) << text;
+        EXPECT_NE(text.find(fmt::format("at most {0}x{0}", most)), std::string::npos) << text;
+    }
+    for (const std::string_view kind : {"image", "history"}) {
+        const CustomEffect twice = test::must(CustomEffect::parse(
+            fmt::format(
+                "// @effect twice: Twice.\n{}// @{} big: 2 rgba8\n// @pass make: picture -> big\n"
+                "vec4 twice_make(Pixel pixel, Twice parameters) {{ return sample_linear(picture, pixel.uv); }}\n"
+                "// @end big\n"
+                "vec4 twice(vec4 color, Pixel pixel, Twice parameters) {{ return sample_linear(big, pixel.uv); "
+                "}}\n",
+                kind == "history" ? "// @pre_roll 1\n" : "", kind),
+            "twice.glsl"));
+        Composer composer(host.device);
+        composer.add(twice.info(), nullptr);
+        EXPECT_EQ(error(composer.compile(small)), "none");
+        EXPECT_EQ(error(composer.compile(large)), fmt::format("image 'twice.big' would be {}x8: this device allows at "
+                                                              "most {}x{}",
+                                                              2 * (most - 8), most, most));
+    }
+    const ResourceImage wide{.width = most + 1, .height = 1, .rgba = std::vector<float>(std::size_t{4} * (most + 1))};
+    EXPECT_FALSE(scaled.define(wide));
 }
 
 }  // namespace

@@ -335,6 +335,40 @@ TEST(ComposeColorState, ATargetGetsItsColoursWithOrWithoutAlphaAsItSays) {
     }
 }
 
+// What an entry made in the frame before is what it was then: code values are not encoded again.
+TEST(ComposeColorState, ThePictureOfTheFrameBeforeKeepsItsState) {
+    const test::Host host(test::uniform(4, 4, {0.2, 0.2, 0.2, 1}));
+    CompileDesc desc = host.compile_desc();
+    desc.encodes_target = true;
+    const auto shown = [&](auto fill) {
+        Composer composer(host.device);
+        fill(composer);
+        test::must(composer.compile(desc));
+        for (int i = 0; i < 4; ++i) test::must(host.record(composer, host.frame()));
+        return host.run(composer).at(1, 1).r;
+    };
+    const double once = shown([](Composer& composer) { composer.add(Encode{}); });
+    EXPECT_NEAR(once, 0.4845, 1e-3) << "sRGB's curve of 0.2";
+    EXPECT_NEAR(shown([](Composer& composer) {
+                    const Handle encode = composer.add(Encode{});
+                    composer.add(Vignette{.intensity = 0}, {.input = encode.previous()});
+                }),
+                once, 1e-5);
+    EXPECT_NEAR(shown([](Composer& composer) {
+                    const Handle encode = composer.add(Encode{});
+                    composer.add(Blend{}, {.input = encode.previous(), .second = encode, .opacity = 0.5f});
+                }),
+                once, 1e-5);
+    // Of an entry that comes later, in a loop of its own.
+    EXPECT_NEAR(shown([](Composer& composer) {
+                    const Handle copy = composer.add(Vignette{.intensity = 0}, {.input = scene_color});
+                    const Handle encode = composer.add(Encode{}, {.input = scene_color});
+                    test::must(composer.rewire(copy, {.input = encode.previous()}));
+                    composer.add(Blend{.amount = 1}, {.input = encode, .second = copy});
+                }),
+                once, 1e-5);
+}
+
 TEST(ComposeColorState, ATargetThatCannotHoldWhatItSaysIsRefused) {
     test::Host host(test::uniform(4, 4, {1, 1, 1, 1}));
     Composer composer(host.device);

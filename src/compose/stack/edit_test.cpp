@@ -194,6 +194,30 @@ TEST_F(ComposeEdit, ControlsOfAnEntryThatIsWiredAnewMoveThePictureThatRuns) {
     EXPECT_NEAR(green(), plain * 2, 1e-4);
 }
 
+TEST_F(ComposeEdit, WhatAHostFilledInWronglyIsRefused) {
+    const Host host(small_picture());
+    const auto error = [](const auto& done) { return done ? std::string("none") : done.error().text; };
+    for (const auto& [opacity, text] : {std::pair{-1.0f, "-1"}, {7.0f, "7"}, {std::nanf(""), "nan"}}) {
+        Composer composer(host.device);
+        const Handle handle = add(composer, "negative", {}, {.opacity = opacity});
+        const std::string expected = fmt::format("negative: opacity = {}: allowed is [0, 1]", text);
+        EXPECT_EQ(error(composer.compile(host.compile_desc())), expected);
+        EXPECT_EQ(error(composer.rewire(handle, {.opacity = opacity})), expected);
+    }
+    Composer composer(host.device);
+    const auto wrong = static_cast<BlendMode>(77);
+    const Handle handle = add(composer, "negative", {}, {.blend = wrong});
+    EXPECT_EQ(error(composer.compile(host.compile_desc())), "negative: blend = 77: allowed is 0 to 8");
+    must(composer.rewire(handle, {}));
+    EXPECT_EQ(error(composer.compile(host.compile_desc())), "none");
+    EXPECT_FALSE(composer.rewire(handle, {.blend = wrong}));
+    ColorTable flat{.size = 2, .cube = std::vector<float>(24, 0.5f)};
+    must(composer.define(flat));
+    flat.min = flat.max;
+    EXPECT_EQ(error(composer.define(flat)),
+              "a cube from 1 to 1: allowed is a finite domain that ends above where it begins");
+}
+
 /// Until a plan is ready; records nothing.
 void wait_until_ready(const Composer& composer) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -220,6 +244,30 @@ TEST_F(ComposeEdit, APlanForOtherFormatsWaitsForTheFirstFrameOfThem) {
         EXPECT_FALSE(composer.pending().is_pending);
         EXPECT_FALSE(host.record(composer, host.frame())) << "of formats that are no more";
     }
+}
+
+TEST_F(ComposeEdit, APlanWithAnotherImageWaitsForItAndOneThatIsForgottenIsAnError) {
+    if (find_effect("fog") == nullptr) GTEST_SKIP() << "this build has no effect fog";
+    const Host host(small_picture());
+    const gpu::test::Picture depth = gpu::test::blank(host.device.context(), {40, 33}, VK_FORMAT_R32_SFLOAT);
+    Composer composer(host.device, {.max_threads = 0});
+    add(composer, "exposure", {{"exposure", 2}});
+    must(composer.compile(host.compile_desc()));
+    add(composer, "fog");
+    CompileDesc desc = host.compile_desc();
+    desc.depth = {VK_FORMAT_R32_SFLOAT};
+    must(composer.compile_later(desc));
+    must(host.record(composer, host.frame()));
+    EXPECT_TRUE(composer.pending().is_ready);
+    Frame frame = host.frame();
+    frame.camera.depth = DepthKind::Planar;
+    frame.depth = test::image_ref(depth);
+    must(host.record(composer, frame));
+    EXPECT_FALSE(composer.pending().is_pending);
+    must(composer.compile_later(desc));
+    const auto forgotten = host.record(composer, host.frame());
+    ASSERT_FALSE(forgotten);
+    EXPECT_EQ(forgotten.error().text, "record: frame.depth is not given, and the plan reads it");
 }
 
 TEST_F(ComposeEdit, AHostThatAsksForTheComingPlanGetsNoOther) {

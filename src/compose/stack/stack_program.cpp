@@ -38,7 +38,7 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
 
 }  // namespace
 
-Result<> StackProgram::make_tables(gpu::Context& context) {
+Result<> StackProgram::make_tables(gpu::Context& context, const StackProgram* older) {
     if (tables) return {};
     const auto is_shadow_map = [](const auto& import) {
         return import && import->kind == plan::HostImage::Kind::Shadow;
@@ -48,7 +48,9 @@ Result<> StackProgram::make_tables(gpu::Context& context) {
         if (!made) return failure(std::move(made));
         lit = std::move(*made);
     }
-    auto made = Tables::create(context, program.fixed_images);
+    const bool has_older = older != nullptr && older->tables.has_value();
+    auto made = has_older ? Tables::create(context, program.fixed_images, &*older->tables, older->program.fixed_images)
+                          : Tables::create(context, program.fixed_images);
     if (!made) return failure(std::move(made));
     tables.emplace(std::move(*made));
     return {};

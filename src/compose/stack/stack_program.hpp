@@ -17,8 +17,16 @@ namespace darkroom::compose {
 /// its answers are the same.
 [[nodiscard]] inline auto facts_of(const CompileDesc& desc) {
     return std::tie(desc.target, desc.target_extent.width, desc.target_extent.height, desc.target_domain,
-                    desc.target_color, desc.is_color_associated, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
+                    desc.target_color, desc.is_color_associated, desc.encodes_target, desc.kernels, desc.fuse,
+                    desc.intermediate, desc.watches);
 }
+
+/// Of all chains of a composer, one after the other: by it kernels and uploads know which recordings have finished.
+/// Recording alone touches it.
+struct Clock {
+    std::uint64_t recordings = 0;
+    std::uint32_t most_unfinished = 1;
+};
 
 struct StackProgram {
     plan::Program program;
@@ -27,12 +35,9 @@ struct StackProgram {
     CompileDesc desc;
     std::optional<Tables> tables;  ///< made with the first chain
     LitShadowMap lit;              ///< where a kernel reads shadows
-    // By all chains that have used it, one after the other: the clock of its kernels. Recording alone touches them.
-    std::uint64_t recordings = 0;
-    std::uint32_t most_unfinished = 1;
 
-    /// The constant images, unless they are there.
-    [[nodiscard]] Result<> make_tables(gpu::Context& context);
+    /// The constant images, unless they are there; as far as they are those of `older`, that one's. May be null.
+    [[nodiscard]] Result<> make_tables(gpu::Context& context, const StackProgram* older);
     /// Would planning `other_stack` for `other_desc` give this program again?
     [[nodiscard]] bool serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const;
 };

@@ -49,7 +49,10 @@ Timers::~Timers() {
 }
 
 void Timers::begin(VkCommandBuffer commands, std::uint32_t slot) {
-    if (pool != VK_NULL_HANDLE) context->vk.CmdResetQueryPool(commands, pool, slot * marks, marks);
+    if (pool == VK_NULL_HANDLE) return;
+    // At once: what the slot's last recording left is not to be taken for this one's, which may never be submitted.
+    if (is_reset) context->vk.ResetQueryPool(context->device, pool, slot * marks, marks);
+    context->vk.CmdResetQueryPool(commands, pool, slot * marks, marks);
 }
 
 void Timers::mark(VkCommandBuffer commands, std::uint32_t slot, std::uint32_t index) {

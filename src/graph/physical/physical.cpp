@@ -60,6 +60,11 @@ void record_transition(VkCommandBuffer commands, const gpu::Dispatch& vk, const 
 
 Measure measure_on(gpu::Context& context) {
     return [&context](const ImageDesc& desc, VkImageUsageFlags usage, const Extents& frame) -> Result<Requirements> {
+        const auto [width, height] = desc.size.of(frame);
+        const std::uint32_t most = context.traits.max_image_dimension;
+        if (width > most || height > most)
+            return user_error(fmt::format("image '{}' would be {}x{}: this device allows at most {}x{}", desc.name,
+                                          width, height, most, most));
         auto measured = gpu::Image::measure(context, info_of(desc, usage, desc.size.of(frame)));
         if (!measured) return failure(std::move(measured));
         return Requirements{measured->size, measured->alignment, measured->memoryTypeBits};

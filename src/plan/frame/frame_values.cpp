@@ -97,13 +97,15 @@ FrameValues example_values(const Program& program, const CompileDesc& desc, std:
     FrameValues values(program, entries);
     const Camera camera;
     const auto lights = example_lights(desc);
-    values.evaluate(program, desc, entries,
-                    {.scene_extent = desc.max_extent,
-                     .frame_extent = desc.max_extent,
-                     .output_extent = desc.max_extent,
-                     .camera = &camera,
-                     .lights = lights},
-                    desc.target_extent);
+    // Twice, for entries that read what a later one made in the frame before.
+    for (int frame = 0; frame < 2; ++frame)
+        values.evaluate(program, desc, entries,
+                        {.scene_extent = desc.max_extent,
+                         .frame_extent = desc.max_extent,
+                         .output_extent = desc.max_extent,
+                         .camera = &camera,
+                         .lights = lights},
+                        desc.target_extent);
     return values;
 }
 

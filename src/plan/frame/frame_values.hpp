@@ -27,7 +27,7 @@ class FrameValues {
     [[nodiscard]] float opacity(std::uint32_t entry) const { return opacities_[entry]; }
     /// What the picture is that an entry gets, and that the target gets.
     [[nodiscard]] ColorState state_before(const Program& program, std::uint32_t entry) const {
-        return state_behind(program.entry_inputs[entry]);
+        return state_behind(program.entry_states[entry]);
     }
     [[nodiscard]] ColorState state_after(std::uint32_t entry) const { return states_[entry]; }
     [[nodiscard]] ColorState last_state(const Program& program) const { return state_behind(program.last_entry); }
@@ -49,7 +49,7 @@ class FrameValues {
     std::vector<std::uint32_t> words_, first_word_;
     std::vector<std::uint8_t> is_on_;
     std::vector<float> opacities_;
-    std::vector<ColorState> states_;  ///< behind each entry
+    std::vector<ColorState> states_;  ///< behind each entry; one that an earlier entry reads is the last frame's
     std::vector<Work> works_;
     ColorState scene_;
     Conversion finish_;

@@ -272,7 +272,9 @@ Result<> Planner::finish() {
     const Finish by_frame = desc_.target_color ? Finish::OfFrameOrConvert : Finish::OfFrame;
     if (finish == Finish::Convert) finish = by_frame;
     const bool is_open = desc_.target_color || finish_of(srgb_color, desc_).kind != finish;
-    for (std::uint32_t i = program_.last_entry; is_open && i < stack_.size(); i = program_.entry_inputs[i])
+    std::size_t steps = 0;
+    for (std::uint32_t i = program_.last_entry; is_open && i < stack_.size() && steps < stack_.size();
+         i = program_.entry_states[i], ++steps)
         if (stack_[i].info->makes != nullptr) finish = by_frame;
     const VkExtent2D own = desc_.target_extent;
     std::size_t kernel = values_[last].kernel;

@@ -97,14 +97,15 @@ bool Planner::is_loaded_beside(const OpenKernel& kernel, std::string_view image)
 
 bool Planner::is_of_ui(std::uint32_t entry) const {
     std::uint32_t i = entry;
-    do i = program_.entry_inputs[i];
-    while (i < stack_.size() && stack_[i].info->makes == nullptr);
+    std::size_t steps = 0;  // frames before may close a loop
+    do i = program_.entry_states[i];
+    while (i < stack_.size() && stack_[i].info->makes == nullptr && ++steps < stack_.size());
     return i == ui_entry;
 }
 
 bool Planner::may_be_encoded(std::uint32_t entry) const {
-    std::uint32_t i = program_.entry_inputs[entry];
-    for (; i < stack_.size(); i = program_.entry_inputs[i]) {
+    std::uint32_t i = program_.entry_states[entry];
+    for (std::size_t steps = 0; i < stack_.size() && steps < stack_.size(); i = program_.entry_states[i], ++steps) {
         const EffectInfo& info = *stack_[i].info;
         if (info.makes == nullptr || program_.is_left_out[i]) continue;
         for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})

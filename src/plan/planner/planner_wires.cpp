@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "gpu/resource/formats.hpp"
 #include "plan/planner/planner_state.hpp"
@@ -16,14 +15,6 @@ namespace {
 
 /// Of the histories of an entry, that of its output; its effect's are counted from 0.
 constexpr std::uint32_t output_history = ~0u;
-
-TableDesc texels_of(const ResourceImage& image) {
-    TableDesc desc{
-        .name = "picture", .format = VK_FORMAT_R32G32B32A32_SFLOAT, .extent = {image.width, image.height, 1}};
-    desc.data.resize(image.rgba.size() * sizeof image.rgba[0]);
-    std::memcpy(desc.data.data(), image.rgba.data(), desc.data.size());
-    return desc;
-}
 
 }  // namespace
 
@@ -118,6 +109,11 @@ std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
 void Planner::resolve_inputs() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i)
         program_.entry_inputs.push_back(resolved(stack_[i].desc.input, i));
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const Handle input = stack_[i].desc.input;
+        const bool is_earlier = input.is_previous && index_of(input) != no_entry;
+        program_.entry_states.push_back(is_earlier ? past_what_is_left_out(index_of(input)) : program_.entry_inputs[i]);
+    }
     program_.last_entry = past_what_is_left_out(last_of_picture());
 }
 
@@ -167,9 +163,12 @@ Result<> Planner::make_wires() {
             if (!is_read || wires_.contains(key)) continue;
             if (const ResourceImage* const picture = picture_of(i, handle)) {
                 const graph::Size size{.width = picture->width, .height = picture->height};
-                values_.push_back({.image = import_constant(texels_of(*picture), size),
-                                   .size = size,
-                                   .why = "a picture that was given starts here"});
+                const graph::Version image = import_constant({.name = "picture",
+                                                              .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                              .extent = {picture->width, picture->height, 1}},
+                                                             size);
+                program_.fixed_images.back().picture = stack_[i].resources->at(handle.id);
+                values_.push_back({.image = image, .size = size, .why = "a picture that was given starts here"});
             } else if (handle.is_previous) {
                 auto value = previous_of(handle);
                 if (!value) return failure(std::move(value));
