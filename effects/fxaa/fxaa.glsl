@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encoded or display_linear; luma is that of the values as they are. Timothy Lottes, "FXAA", 2009, and the quality form of
+// Encoded or display_linear; luma is that of the values as they are, and pixels are mixed as light. Timothy Lottes, "FXAA", 2009, and the quality form of
 // version 3.11, 2011.
 #include "shared/sanitize.glsl"
 
@@ -68,5 +68,6 @@ vec4 fxaa(Pixel pixel, Fxaa parameters) {
     bool is_step = (end < 0.0) != (m < other);
     float shift = max(is_step ? 0.5 - min(away.x, away.y) / (away.x + away.y) : 0.0, lone * lone * parameters.subpixel);
     if (!(shift > 0.0)) return own;
-    return vec4(mix(sanitize(own).rgb, sanitize(load(picture, texel + across)).rgb, shift), own.a);
+    vec4 from = fxaa_light(sanitize(own)), toward = fxaa_light(sanitize(load(picture, texel + across)));
+    return fxaa_coded(from + shift * (toward - from));
 }

@@ -11,7 +11,7 @@
 #include <darkroom/reference.hpp>
 #include <span>
 
-#include "shared/finite_reference.hpp"
+#include "shared/light_reference.hpp"
 
 namespace darkroom {
 
@@ -83,17 +83,14 @@ inline ReferenceImage fxaa_reference(const void* parameters, const ReferenceInpu
     const ReferenceImage& picture = *input.picture;
     const Fxaa& fxaa = *static_cast<const Fxaa*>(parameters);
     ReferenceImage out = picture;
-    const auto mixed = [](double a, double b, double amount) {
-        return std::lerp(finite_reference(a), finite_reference(b), amount);
-    };
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const FxaaMove move = fxaa_reference_move(picture, x, y, fxaa);
             if (!(move.amount > 0)) continue;
-            const Rgba &own = picture.at(x, y),
-                       &toward = picture.clamped(std::int64_t{x} + move.dx, std::int64_t{y} + move.dy);
-            out.at(x, y) = {mixed(own.r, toward.r, move.amount), mixed(own.g, toward.g, move.amount),
-                            mixed(own.b, toward.b, move.amount), own.a};
+            const Rgba own = light_reference(picture.at(x, y), input.color);
+            const Rgba toward =
+                light_reference(picture.clamped(std::int64_t{x} + move.dx, std::int64_t{y} + move.dy), input.color);
+            out.at(x, y) = coded_reference(toward_reference(own, own, toward, move.amount), input.color);
         }
     }
     return out;

@@ -90,6 +90,57 @@ TEST(EffectFxaa, AStairBecomesTheLineThatItStandsFor) {
     }
 }
 
+// The eye sees light, so it is light that a pixel has as much of as the line covers, whatever the picture's numbers
+// are.
+TEST(EffectFxaa, AnEdgeInCodeValuesIsCoveredByLight) {
+    const ReferenceImage picture = slanted_edge(400, 32, 10, false);
+    const auto worst = [&](const ReferenceImage& out, const auto& light) {
+        double most = out.pixels.empty() ? 1 : 0;
+        for (std::uint32_t x = 40; x < 200; ++x) {
+            double covered = 0;
+            for (std::uint32_t y = 0; y < out.height; ++y) covered += light(out.at(x, y).g);
+            most = std::max(most, std::abs(covered - (32 - (8 + (x + 0.5) / 10 - 0.5))));
+        }
+        return most;
+    };
+    const Fxaa fxaa{.subpixel = 0};
+    EXPECT_LE(worst(test::develop([&](Composer& composer) { composer.add(fxaa, {.input = ui_layer}); }, picture,
+                                  {.ui = &picture, .ui_format = VK_FORMAT_R32G32B32A32_SFLOAT}),
+                    srgb_decoded),
+              0.11);
+    for (const ColorState& state : {srgb_color, pq_color}) {
+        // Of the peak of the display, or of what its diffuse white is.
+        ReferenceImage coded = picture;
+        for (Rgba& pixel : coded.pixels)
+            pixel = coded_reference({203 * pixel.r, 203 * pixel.g, 203 * pixel.b, 1}, state);
+        const ReferenceImage out = fxaa_reference(&fxaa, {.picture = &coded, .source = &coded, .color = state});
+        EXPECT_LE(worst(out, [&](double code) { return light_reference({code, code, code, 1}, state).g / 203; }), 0.11);
+    }
+}
+
+TEST(EffectFxaa, CoverageMovesWithColour) {
+    const EffectInfo* const encode = find_effect("encode");
+    if (encode == nullptr) GTEST_SKIP() << "this build has no encode";
+    ReferenceImage picture = slanted_edge(120, 32, 10, false);
+    for (Rgba& pixel : picture.pixels) pixel = {0.5 * pixel.g, 0.25 * pixel.g, pixel.g, pixel.g};
+    for (const bool is_encoded : {false, true}) {
+        const ReferenceImage out = test::develop(
+            [&](Composer& composer) {
+                if (is_encoded) composer.add(*encode, nullptr);
+                composer.add(Fxaa{.subpixel = 0});
+            },
+            picture, {.is_color_associated = true});
+        ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+        int partly = 0;
+        for (const Rgba& pixel : out.pixels) {
+            EXPECT_NEAR(pixel.b, pixel.a, 1e-5);
+            EXPECT_NEAR(pixel.r, (is_encoded ? srgb_encoded(0.5) : 0.5) * pixel.a, 1e-5);
+            partly += pixel.a > 0.01 && pixel.a < 0.99 ? 1 : 0;
+        }
+        EXPECT_GT(partly, 50);
+    }
+}
+
 // Ends that lie an even number of pixels away are found by pixels alone, not by pairs.
 TEST(EffectFxaa, TheDensestSearchFindsTheEndsOfShortSteps) {
     const ReferenceImage picture = slanted_edge(200, 32, 5, false);

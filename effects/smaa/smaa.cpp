@@ -55,6 +55,7 @@ const EffectInfo& effect_info(const Smaa&) {
         .touch = Touch::Warp,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
         .flat = {.documented = 94, .scene_linear = 94},
+        .mixes_light = true,
         .build = build,
         .reference = smaa_reference,
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encoded or display_linear. Each pixel takes its part of those beside it, across the edges that matter more there: those to
+// Encoded or display_linear. Each pixel takes its part of the light of those beside it, across the edges that matter more there: those to
 // its sides, or those above and below. Jorge Jimenez et al., "SMAA: Enhanced Subpixel Morphological Antialiasing", 2012,
 // section 4.4; but that both parts count, which a thin line has on either side.
 #include "shared/sanitize.glsl"
@@ -16,8 +16,8 @@ vec4 smaa(Pixel pixel, Smaa parameters) {
     if (!(sum > 0.0)) return own;
     parts /= max(sum, 1.0);
     ivec2 along = is_level ? ivec2(1, 0) : ivec2(0, 1);
-    vec3 from = sanitize(own).rgb;
-    vec3 before = sanitize(load(picture, max(texel - along, 0))).rgb;
-    vec3 after = sanitize(load(picture, min(texel + along, limit))).rgb;
-    return vec4(from + parts.x * (before - from) + parts.y * (after - from), own.a);
+    vec4 from = smaa_light(sanitize(own));
+    vec4 before = smaa_light(sanitize(load(picture, max(texel - along, 0))));
+    vec4 after = smaa_light(sanitize(load(picture, min(texel + along, limit))));
+    return smaa_coded(from + parts.x * (before - from) + parts.y * (after - from));
 }

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "shared/finite_reference.hpp"
+#include "shared/light_reference.hpp"
 #include "smaa/smaa_line_reference.hpp"
 
 namespace darkroom {
@@ -36,7 +36,11 @@ inline constexpr int smaa_least_diagonal = 5;
 class SmaaReference {
   public:
     SmaaReference(const Smaa& smaa, const ReferenceInput& input)
-        : smaa_(smaa), picture_(*input.picture), depth_(input.depth), steps_(smaa_steps(smaa.quality)) {
+        : smaa_(smaa),
+          picture_(*input.picture),
+          depth_(input.depth),
+          color_(input.color),
+          steps_(smaa_steps(smaa.quality)) {
         for (std::int64_t y = 0; y < picture_.height; ++y)
             for (std::int64_t x = 0; x < picture_.width; ++x) edges_.push_back(edges_of(x, y));
         for (std::int64_t y = 0; y < picture_.height; ++y)
@@ -264,19 +268,19 @@ class SmaaReference {
         const double before = is_level ? left : up, behind = is_level ? right : down;
         if (!(before + behind > 0)) return;
         const double scale = 1 / std::max(before + behind, 1.0);
-        const Rgba& a = is_level ? picture_.clamped(x - 1, y) : picture_.clamped(x, y - 1);
-        const Rgba& b = is_level ? picture_.clamped(x + 1, y) : picture_.clamped(x, y + 1);
-        Rgba& pixel = out.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-        for (double Rgba::*const c : {&Rgba::r, &Rgba::g, &Rgba::b}) {
-            const double from = finite_reference(pixel.*c);
-            pixel.*c =
-                from + scale * (before * (finite_reference(a.*c) - from) + behind * (finite_reference(b.*c) - from));
-        }
+        const auto light = [&](std::int64_t u, std::int64_t v) {
+            return light_reference(picture_.clamped(u, v), color_);
+        };
+        const Rgba from = light(x, y), a = is_level ? light(x - 1, y) : light(x, y - 1),
+                   b = is_level ? light(x + 1, y) : light(x, y + 1);
+        out.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) = coded_reference(
+            toward_reference(toward_reference(from, from, a, scale * before), from, b, scale * behind), color_);
     }
 
     const Smaa& smaa_;
     const ReferenceImage& picture_;
     const ReferenceImage* depth_;
+    ColorState color_;
     SmaaSteps steps_;
     std::vector<Edges> edges_;
     std::vector<Weights> weights_;

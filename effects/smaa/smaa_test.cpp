@@ -121,6 +121,65 @@ TEST(EffectSmaa, AStairBecomesTheLineThatItStandsFor) {
     }
 }
 
+// As light: at a mean of half a pixel's coverage codes would be off by 0.29 of it.
+TEST(EffectSmaa, LinesInCodeValuesAreCoveredByLight) {
+    constexpr std::uint32_t side = 80, border = 24;
+    double light = 0, codes = 0, none = 0;
+    for (int i = 0; i < 24; ++i)
+        for (const double width : {0.0, 1.0, 2.0}) {
+            const auto line = slanted_line(side, 7.5 * (i + 0.37) * std::numbers::pi / 180, width, i * 0.37 - 4);
+            // Black and white are the same numbers in both.
+            const ReferenceImage picture = sampled(side, 1, line), truth = sampled(side, 8, line);
+            const Smaa smaa;
+            const auto error = [&](const ColorState& state) {
+                ReferenceImage out = smaa_reference(&smaa, {.picture = &picture, .source = &picture, .color = state});
+                for (Rgba& pixel : out.pixels) pixel.g = srgb_decoded(pixel.g);
+                return mean_error(out, truth, border);
+            };
+            light += error(srgb_color), codes += error({}), none += mean_error(picture, truth, border);
+        }
+    EXPECT_LT(light, 0.5 * codes);
+    EXPECT_LT(light, 0.35 * none);
+}
+
+TEST(EffectSmaa, GpuMixesLightAndCoverage) {
+    const EffectInfo* const encode = find_effect("encode");
+    if (encode == nullptr) GTEST_SKIP() << "this build has no encode";
+    ReferenceImage picture = drawing(97, 61);
+    for (const bool is_associated : {false, true}) {
+        if (is_associated)
+            for (Rgba& pixel : picture.pixels) {
+                const double alpha = pixel.g > 0.45 ? 1 : pixel.g > 0.3 ? 0.5 : 0;
+                pixel = {pixel.r * alpha, pixel.g * alpha, pixel.b * alpha, alpha};
+            }
+        picture = test::round_to_float(picture);
+        ReferenceImage coded = picture;
+        const auto without_alpha = [](double value, double alpha) {
+            return alpha > 0 ? alpha * srgb_encoded(value / alpha) : srgb_encoded(value);
+        };
+        for (Rgba& p : coded.pixels) {
+            const double alpha = is_associated ? p.a : 1;
+            p = {without_alpha(p.r, alpha), without_alpha(p.g, alpha), without_alpha(p.b, alpha), p.a};
+        }
+        ColorState state = srgb_color;
+        state.is_associated = is_associated;
+        const Smaa smaa;
+        const ReferenceImage expected = smaa_reference(&smaa, {.picture = &coded, .source = &coded, .color = state});
+        for (const bool fuse : {true, false}) {
+            const ReferenceImage out = test::develop(
+                [&](Composer& composer) {
+                    composer.add(*encode, nullptr);
+                    composer.add(smaa);
+                },
+                picture, {.fuse = fuse, .is_color_associated = is_associated});
+            // A code of the weights in the dark, where a step of light is many of codes.
+            EXPECT_LE(test::worst_difference(out, expected), 0.03);
+            if (!is_associated) continue;
+            for (const Rgba& pixel : out.pixels) EXPECT_LE(std::max({pixel.r, pixel.g, pixel.b}), pixel.a + 1e-5);
+        }
+    }
+}
+
 TEST(EffectSmaa, FlatFieldsAndStraightEdgesKeepTheirBits) {
     const ReferenceImage flat = test::round_to_float(test::uniform(33, 19, {0.3, 0.7, 0.1, 0.25}));
     EXPECT_EQ(test::worst_difference(smoothed({}, flat), flat), 0);

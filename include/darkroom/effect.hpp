@@ -111,6 +111,10 @@ struct EffectInfo {
     float (*working_white_nits)(const void* parameters) = nullptr;
     /// What a path tracer or a camera puts into its pictures itself: occlusion, light in the air, motion.
     bool is_in_traced_light = false;
+    /// Mixes the colours of several pixels, which is right in light alone. It reads and returns the picture's numbers;
+    /// its text calls `vec4 <name>_light(vec4 color)`, multiplied by alpha where frames are, and `vec4
+    /// <name>_coded(vec4 light)`. Of touch Warp.
+    bool mixes_light = false;
     /// What it makes of a colour is no multiple of that: of a picture that is multiplied by its alpha it gets the
     /// colours divided, and they are multiplied again behind it.
     bool maps_colors = false;

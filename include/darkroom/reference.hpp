@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <darkroom/color_state.hpp>
 #include <darkroom/frame.hpp>
 #include <darkroom/resource.hpp>
 #include <functional>
@@ -63,6 +64,7 @@ struct ReferenceInput {
     const ReferenceImage* exposure = nullptr;
     std::span<const ReferenceLight> lights;
     const Resources* resources = nullptr;
+    ColorState color;  ///< what the picture's numbers are
     Camera camera;
     double time = 0;
     double delta_time = 0;

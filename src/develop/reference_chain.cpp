@@ -313,7 +313,7 @@ class Chain {
                                      : sizes_[from].scaled(info.output_scale.numerator, info.output_scale.denominator);
         if (is_off) return keep(pictures_[at_size(from, size)], size);
         const bool is_wrapped = plan::may_need_work(info, states_[from].domain == Domain::Encoded, desc.is_ui);
-        if (!plan::maps_without_alpha(info, is_wrapped, input_.is_color_associated && !desc.is_ui))
+        if (info.mixes_light || !plan::maps_without_alpha(info, is_wrapped, input_.is_color_associated && !desc.is_ui))
             return keep(encoded_result(info, desc, words, index, from), size);
         const ColorState state = states_[from];
         from = keep(alpha_divided(pictures_[from]), sizes_[from]);
@@ -353,7 +353,7 @@ class Chain {
                                   const std::vector<std::uint32_t>& words, std::size_t index, std::size_t from) {
         const ColorState state = states_[from];
         const bool may_work = plan::may_need_work(info, state.domain == Domain::Encoded, false);
-        if (!may_work || plan::work_of(info, state, words.data()).word == 0)
+        if (info.mixes_light || !may_work || plan::work_of(info, state, words.data()).word == 0)
             return result(info, desc, words, index, from);
         const double white = info.working_white_nits == nullptr ? double{state.white_nits}
                                                                 : double{info.working_white_nits(words.data())};
@@ -394,6 +394,7 @@ class Chain {
                              .second = second,
                              .lights = input_.lights,
                              .resources = &composer_.resources(),
+                             .color = states_[from],
                              .camera = input_.camera,
                              .time = input_.time,
                              .delta_time = input_.delta_time,
@@ -401,6 +402,7 @@ class Chain {
                              .output_width = output.width,
                              .output_height = output.height,
                              .history = history_of(composer_.entry(index), base)};
+        given.color.is_associated = input_.is_color_associated && !desc.is_ui;
         for (const plan::FrameInput& input : plan::frame_inputs)
             if (input.reference != nullptr) given.*input.reference = input_at(input, base);
         ReferenceImage layer = info.reference(words.data(), given);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How a step of a fused kernel gets the picture in a frame: as it is, or as code values of sRGB, which is decided by
-// the state of the picture and what its effect works with. The chain of references decides by the same. And what the
+// the state of the picture and what its effect works with; and how one that mixes pixels gets their light. The chain of references decides by the same. And what the
 // target's kernel does last: the difference of the picture's state and the target's.
 
 #include <darkroom/composer.hpp>
@@ -46,7 +46,7 @@ inline constexpr std::uint32_t conversion_bits = 14;  ///< of Conversion::word()
 [[nodiscard]] Domain target_domain(const CompileDesc& desc);
 /// What a frame's colour is: light, whose white is the target's.
 [[nodiscard]] ColorState scene_state(const CompileDesc& desc);
-/// Does an effect get the colours of a picture that `is_associated` divided by alpha?
+/// Does an effect get the colours of a picture that `is_associated` divided by alpha, or turn them into light so?
 [[nodiscard]] bool maps_without_alpha(const EffectInfo& info, bool is_wrapped, bool is_associated);
 /// What the target's kernel does for alpha. A target that is not told keeps it as the frames have it.
 [[nodiscard]] FinishAlpha finish_alpha(const CompileDesc& desc, Finish finish);

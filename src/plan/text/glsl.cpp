@@ -303,6 +303,28 @@ std::string finish_code(Finish finish, std::uint32_t word) {
     return out;
 }
 
+std::string work_word(const FusedStep& step, std::string_view prefix) {
+    return step.work ? fmt::format("{}u", *step.work) : fmt::format("{}work_", prefix);
+}
+
+/// Of an effect that mixes pixels: from the picture's numbers to light, multiplied by alpha where frames are, and back.
+std::string light_functions(const FusedStep& step, std::string_view prefix, std::string_view suffix) {
+    const auto function = [&](std::string_view name, std::string_view turned) {
+        std::string out = fmt::format("vec4 {}_{}{}(vec4 color) {{\n", step.info->name, name, suffix);
+        if (step.is_wrapped && step.work != 0u) {
+            out += fmt::format("    if ({} == 0u) return color;\n", work_word(step, prefix));
+            if (step.divides_alpha) out += "    color = alpha_divided(color);\n";
+            out += fmt::format("    color.rgb = {};\n", turned);
+            if (step.divides_alpha) out += "    color = alpha_multiplied(color);\n";
+        }
+        return out + "    return color;\n}\n";
+    };
+    const std::string word = work_word(step, prefix);
+    return function("light", fmt::format("color_state_to_light(color.rgb, {}, {}work_ootf_)", word, prefix)) +
+           function("coded",
+                    fmt::format("color_state_from_light(color.rgb, {0}, {1}work_limit_, {1}work_ootf_)", word, prefix));
+}
+
 }  // namespace
 
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha,
@@ -325,6 +347,11 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             if (step.info->touch == Touch::Tap)
                 declarations += fmt::format("vec4 {}_read{}(vec2 uv) {{ return sample_linear({}, uv); }}\n",
                                             step.info->name, suffix, step.reads);
+            if (step.info->mixes_light) {
+                has_wrap |= step.is_wrapped;
+                has_alpha |= step.divides_alpha;
+                declarations += light_functions(step, prefix, suffix);
+            }
             declarations += step.text->glsl;
         }
         if (is_of_reading && !step.is_layer) {
@@ -344,9 +371,9 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                               : fmt::format("{}opacity_", prefix);
             layer = fmt::format("merge_layer(color, {}, {}, {}blend_)", layer, opacity, prefix);
         }
-        if (step.is_wrapped && step.work != 0u) {
+        if (!step.info->mixes_light && step.is_wrapped && step.work != 0u) {
             has_wrap = true;
-            const std::string word = step.work ? fmt::format("{}u", *step.work) : prefix + "work_";
+            const std::string word = work_word(step, prefix);
             declarations += fmt::format(
                 "vec4 wrapped{0}(vec4 color, Pixel pixel) {{\n    bool is_other = {1} != 0u;\n"
                 "    if (is_other) color.rgb = color_state_to_srgb(color.rgb, {1}, {2}work_scale_, {2}work_ootf_);\n"
@@ -355,7 +382,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                 suffix, word, prefix, layer);
             layer = fmt::format("wrapped{}(color, pixel)", suffix);
         }
-        if (step.divides_alpha) {
+        if (!step.info->mixes_light && step.divides_alpha) {
             has_alpha = true;
             declarations += fmt::format(
                 "vec4 without_alpha{}(vec4 color, Pixel pixel) {{\n    color = alpha_divided(color);\n"

@@ -71,7 +71,7 @@ struct FusedStep {
     std::string reads;                       ///< of a map or tap: the image that its reading samples
     bool is_layer = false;                   ///< of such: laid over the picture, with opacity, mode and mask
     bool is_second_resampled = false;        ///< its second picture has another size than the kernel's
-    bool is_wrapped = false;                 ///< it may get the picture as code values of sRGB: see frame/color.hpp
+    bool is_wrapped = false;                 ///< it may get the picture as other numbers: see frame/color.hpp
     bool divides_alpha = false;              ///< it gets the picture's colours without their alpha
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>
