@@ -14,7 +14,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import textwrap
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -368,45 +367,6 @@ class Maker:
         place("recipes/review.jpg").parent.mkdir(exist_ok=True)
         self.jpeg(place("recipes/review.jpg"), self.work / "sheet.png")
 
-    def house(self, place):
-        """Draws the CMake targets, what they build on, and their rooms. Colours hold on a light page and on a dark one."""
-        facts = (self.build / "generated/house.txt").read_text()
-        if "target darkroom_python " not in facts or not shutil.which("tred"):
-            raise LeftOut("graphviz is not installed, or the build has no Python package")
-        kind, folder, rooms, edges = {}, {}, {}, []
-        for word, *rest in map(str.split, facts.splitlines()):
-            if word == "target":
-                kind[rest[0]], folder[rest[0]] = rest[1], rest[2]
-            elif word == "room":
-                room = rest[1].rsplit("/", 1)[-1]
-                rooms.setdefault(rest[0], []).append("one folder an effect" if room == "*" else room)
-            else:
-                edges.append(f'"{rest[0]}" -> "{rest[1]}"' + (" [style=dashed]" if word == "starts" else ""))
-        dot = ["digraph house {", "graph [bgcolor=transparent, ranksep=0.42, nodesep=0.14, margin=0]",
-               'node [shape=box, style="filled,rounded", color="#6b7787", penwidth=1, margin="0.09,0.05", '
-               'fontname="sans-serif", fontcolor="#1b222b"]', 'edge [color="#7d8a9b", penwidth=1.3, arrowsize=0.7]']
-        fills = {"executable": "#fbe3c4", "shared": "#d3edd3", "module": "#f6eebb"}
-        for name, its_kind in kind.items():
-            is_tool = re.match("darkroom_(tests|bench|compilers)$|make_|example_", name)
-            title, subtitle = folder[name], f"lib{name}.so" if its_kind == "module" else name
-            if its_kind == "shared":
-                title = f"lib{name.removesuffix('_shared')}.so"
-            label = f'<B>{title}</B><BR/><FONT POINT-SIZE="11" COLOR="#4a5665">{subtitle}</FONT>'
-            # Lines of some words, so that boxes are as wide as they are high.
-            lines = textwrap.wrap("\0".join(rooms.get(name, [])).replace(" ", "\1").replace("\0", " "), 34)
-            if lines:
-                text = "<BR/>".join(" &#183; ".join(line.split()) for line in lines).replace("\1", " ")
-                label += f'<BR/><FONT POINT-SIZE="11">{text}</FONT>'
-            fill = "#ece4f4" if is_tool else fills.get(its_kind, "#d6e4f7")
-            dot.append(f'"{name}" [label=<{label}>, fillcolor="{fill}"]')
-        drawn = self.run("sh", "-c", "tred | dot -Tsvg", input="\n".join([*dot, *edges, "}"]))
-        # What was drawn goes behind the first tag, by which the test House sees that it has aged. Names of nodes and edges
-        # go: a viewer shows them over the picture.
-        drawn = re.sub(r"<!--.*?-->\n|<title>.*?</title>\n", "", drawn[drawn.index("<svg"):], flags=re.S)
-        head, rest = drawn.split(">\n", 1)
-        told = f"<title>Folders, their targets and rooms, and what each builds on</title>\n<desc>\n{facts}</desc>"
-        place("house.svg").write_text(f"{head}>\n{told}\n{rest}")
-
     def viewer(self, place):
         """`play`, and `edit` with what is clicked there."""
         size = (1280, 720)
@@ -522,8 +482,6 @@ def main():
         others = {("ssao_truth.jpg",): maker.ssao_truth,
                   ("recipes/review.jpg",): maker.review,
                   tuple(f"viewer_{name}.jpg" for name in windows): maker.viewer}
-        if not given.check:
-            others[("house.svg",)] = maker.house  # which the test House checks
         for paths, make in others.items():
             if any(map(is_wanted, paths)):
                 try:
