@@ -46,20 +46,20 @@ struct Part {
     std::map<std::string, std::string> texts;  // attributes
 };
 
-constexpr int width = 24, height = 16;
+constexpr int frame_width = 24, frame_height = 16;
 
 Samples ramp(float first, float step) {
-    Samples out(std::size_t{width} * height);
+    Samples out(std::size_t{frame_width} * frame_height);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = first + step * static_cast<float>(i % 97);
     return out;
 }
-Samples all(float value) { return Samples(std::size_t{width} * height, value); }
+Samples all(float value) { return Samples(std::size_t{frame_width} * frame_height, value); }
 
 void store(const std::string& path, std::vector<Part> parts, const std::vector<std::string>& halves = {},
            const std::vector<std::string>& views = {}) {
     std::vector<Imf::Header> headers;
     for (const Part& part : parts) {
-        Imf::Header& header = headers.emplace_back(width, height);
+        Imf::Header& header = headers.emplace_back(frame_width, frame_height);
         header.dataWindow() = part.window;
         if (!part.view.empty()) header.setView(part.view);
         if (!part.name.empty()) header.setName(part.name);
@@ -178,7 +178,9 @@ TEST_F(CliFrameMeaning, KeptLayersStayAsTheyAreUnderEveryCompression) {
         std::map<std::string, Samples> after;
         for (const Part& part : load(path("out.exr"))) after.insert(part.channels.begin(), part.channels.end());
         for (const auto& [name, samples] : before)
-            if (name.size() > 1 || name == "Z") EXPECT_EQ(after[name], samples) << compression << " " << name;
+            if (name.size() > 1 || name == "Z") {
+                EXPECT_EQ(after[name], samples) << compression << " " << name;
+            }
         const Result<FrameFile> frame = read_frame(path("out.exr"));
         ASSERT_TRUE(frame) << frame.error().text;
         EXPECT_TRUE(frame->depth && frame->velocity) << compression << ": they are still found";
@@ -203,7 +205,9 @@ TEST_F(CliFrameMeaning, EachEyeStaysUnderItsName) {
         EXPECT_EQ(left->color.pixels[0], 0.25f) << in << ": is as it was";
         EXPECT_NE(right->color.pixels[0], 0.25f) << in;
         EXPECT_EQ(right->depth->values[0], 7) << in;
-        if (in == "channels.exr") EXPECT_EQ(left->depth->values[0], 3);
+        if (in == "channels.exr") {
+            EXPECT_EQ(left->depth->values[0], 3);
+        }
         const std::vector<Part> parts = load(path("out.exr")), before = load(path(file));
         ASSERT_EQ(parts.size(), before.size());
         for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -261,10 +265,10 @@ TEST_F(CliFrameMeaning, NamesInFullAreColoursAndMapTakesWhatInfoPrints) {
         const std::string name = layer.at("layer");
         const std::string what = name == "color" || name == "depth" || name == "normals" ? name : "normals";
         EXPECT_EQ(develop("long.exr", "mapped.exr", {"--map", what + "=" + name}).code, 0) << name;
-        if (what == "normals")
-            for (const auto& channel : layer.at("channels"))
-                EXPECT_EQ(develop("long.exr", "mapped.exr", {"--map", "normals=" + channel.get<std::string>()}).code, 0)
-                    << channel;
+        if (what != "normals") continue;
+        for (const auto& channel : layer.at("channels"))
+            EXPECT_EQ(develop("long.exr", "mapped.exr", {"--map", "normals=" + channel.get<std::string>()}).code, 0)
+                << channel;
     }
     const Outcome wrong = develop("long.exr", "x.exr", {"--map", "normals=mian"});
     EXPECT_EQ(wrong.code, 1);
@@ -279,11 +283,11 @@ TEST_F(CliFrameMeaning, DepthOutsideOfItsWindowIsSkyAndDepthOfNothingIsTold) {
     std::vector<Part> out = load(path("out.exr"));
     EXPECT_EQ(out[0].channels["Z"].front(), sky_depth);
     EXPECT_EQ(out[0].channels["other.Z"].front(), sky_depth);
-    EXPECT_EQ(out[0].channels["Z"][4 * width + 4], 2);
+    EXPECT_EQ(out[0].channels["Z"][4 * frame_width + 4], 2);
     EXPECT_EQ(read_frame(path("out.exr"))->depth->values, read_frame(path("in.exr"))->depth->values);
     std::map<std::string, Samples> zeros = rgb(0.5f);
     zeros["Z"] = all(5);
-    std::fill_n(zeros["Z"].begin(), width * height / 4, 0.0f);
+    std::fill_n(zeros["Z"].begin(), frame_width * frame_height / 4, 0.0f);
     store(path("zeros.exr"), {{.channels = zeros}});
     const Result<FrameFile> frame = read_frame(path("zeros.exr"));
     ASSERT_TRUE(frame);
@@ -309,7 +313,7 @@ TEST_F(CliFrameMeaning, FramesThatAreMissingAreNoStepOfAHistory) {
               0);
     EXPECT_LT(load(path("t.0014.exr")).front().channels["R"].front(), 0.79f) << "on twos a step is two frames";
 
-    const std::size_t one = std::size_t{3} * width * height;
+    const std::size_t one = std::size_t{3} * frame_width * frame_height;
     const Outcome held = trail({"--format", "rgb24", "-o", "-"});
     EXPECT_EQ(held.code, 0) << held.err;
     EXPECT_EQ(held.out.size(), 27 * one);

@@ -191,7 +191,7 @@ TEST_F(CliPictureMeaning, WhatIsTransparentLendsNoColourToItsNeighbours) {
         }
     std::vector<float> back = light("disc.png");
     for (std::size_t i = 0; i < back.size(); i += 4)
-        if (back[i + 3] == 0) ASSERT_EQ(back[i + 1], 0) << "no green under alpha 0 reaches a file of light";
+        ASSERT_TRUE(back[i + 3] > 0 || back[i + 1] == 0) << "no green under alpha 0 reaches a file of light";
 }
 
 TEST_F(CliPictureMeaning, GlowOverNothingKeepsItsLightWhereItIsAskedFor) {
@@ -224,9 +224,10 @@ TEST_F(CliPictureMeaning, EveryPairOfBitsAndKindOfTiffIsReadRightOrRefusedByName
     std::mt19937 random(7);
     constexpr std::uint32_t width = 9, height = 3;
     std::size_t read = 0;
-    for (const std::uint16_t meaning : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE, PHOTOMETRIC_RGB})
-        for (const std::uint16_t format : {SAMPLEFORMAT_UINT, SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP})
-            for (const std::uint16_t bits : {1, 2, 3, 4, 5, 6, 8, 10, 12, 14, 15, 16, 20, 24, 32, 64}) {
+    using Tags = std::initializer_list<std::uint16_t>;
+    for (const std::uint16_t meaning : Tags{PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE, PHOTOMETRIC_RGB})
+        for (const std::uint16_t format : Tags{SAMPLEFORMAT_UINT, SAMPLEFORMAT_INT, SAMPLEFORMAT_IEEEFP})
+            for (const std::uint16_t bits : Tags{1, 2, 3, 4, 5, 6, 8, 10, 12, 14, 15, 16, 20, 24, 32, 64}) {
                 if (format != SAMPLEFORMAT_UINT && bits < 8) continue;
                 const std::uint16_t channels = meaning == PHOTOMETRIC_RGB ? 3 : 1;
                 std::vector<std::uint64_t> samples;
