@@ -121,6 +121,9 @@ void LookDocument::watch_files() {
 
 Result<> LookDocument::save() {
     if (file_.empty()) return user_error("the look has no file yet: it needs a name to be saved");
+    std::error_code error;
+    // Where it is gone there is nothing of others to lose.
+    if (!std::filesystem::exists(file_, error) && !error) return write(file_, true);
     const Result<std::string> now = read_look_text(file_);
     if (!now) return failure(now.error());
     if (*now != text_)

@@ -271,6 +271,16 @@ TEST_F(Document, WhatOthersWroteIsNotOverwritten) {
     EXPECT_EQ(text_of(path), "[post_process]\nexposure = 2.0\n");
 }
 
+TEST_F(Document, AFileThatIsGoneIsWrittenAgain) {
+    const fs::path path = write("a.toml", "# mine\n[post_process]\nexposure = 1.0\n");
+    LookDocument document = open(path);
+    must(expose(document, 2));
+    fs::remove(path);
+    must(document.save());
+    EXPECT_EQ(text_of(path), "# mine\n[post_process]\nexposure = 2.0\n");
+    EXPECT_FALSE(document.is_changed());
+}
+
 TEST_F(Document, SaveAsKeepsTheTextOrWritesAnew) {
     const fs::path path = write("a.toml", "# mine\n[post_process]\nexposure = 1.0\n");
     LookDocument document = open(path);
