@@ -54,10 +54,10 @@ Result<> LookDocument::check(const Look& next) const {
     const auto shown = [&](std::size_t entry) { return names[entry]; };
     if (const std::vector<LookProblem> problems = problems_of(next, shown); !problems.empty())
         return user_error(problems.front().text);
-    // Pulses and layers know their entries by names.
+    // Pulses and layers know their entries by names. Those that went along with their entry hold nothing.
     const std::vector<std::string> names_before = entry_names(look_);
     for (std::size_t i = 0; i < names_before.size(); ++i) {
-        if (!is_moved(look_, names_before[i])) continue;
+        if (!is_moved(look_, names_before[i]) || !is_moved(next, names_before[i])) continue;
         const auto now = std::ranges::find(names, names_before[i]) - names.begin();
         if (static_cast<std::size_t>(now) < names.size() &&
             next.entries[static_cast<std::size_t>(now)].id == look_.entries[i].id)

@@ -90,5 +90,28 @@ TEST_F(DocumentUnsaved, ALookWithoutAFileHasATextToo) {
     EXPECT_FALSE(again.is_changed());
 }
 
+TEST_F(DocumentUnsaved, APulseMayGoAlongWithItsEntry) {
+    const fs::path file = write(
+        "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure.exposure\"\namount = 1\n\n"
+        "[[stack]]\neffect = \"bloom\"\n\n[[stack]]\neffect = \"exposure\"\n");
+    LookDocument document = open(file);
+    ASSERT_EQ(document.look().pulses.size(), 1U);
+    Result<> done = document.edit("both", [](Look& look) -> Result<> {
+        look.pulses.clear();
+        look.entries.pop_back();
+        return {};
+    });
+    ASSERT_TRUE(done) << done.error().text;
+    const Result<std::string> unsaved = document.unsaved_text();
+    ASSERT_TRUE(unsaved) << unsaved.error().text;
+    LookDocument next = open(file);
+    done = next.take_unsaved(*unsaved);
+    ASSERT_TRUE(done) << done.error().text;
+    EXPECT_TRUE(says_same(next.look(), document.look()));
+    next.undo();
+    EXPECT_EQ(next.look().pulses.size(), 1U);
+    EXPECT_FALSE(next.is_changed());
+}
+
 }  // namespace
 }  // namespace darkroom::edit
