@@ -99,9 +99,9 @@ void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatVal
 
 /// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE, by four loads.
 /// At the centre of a texel no other is looked at, which may be NaN.
-void write_filter(Text text, std::string_view name, std::string_view function = "sample_linear") {
+void write_filter(Text text, std::string_view name) {
     fmt::format_to(text,
-                   "vec4 {1}_{0}(vec2 uv) {{\n"
+                   "vec4 sample_linear_{0}(vec2 uv) {{\n"
                    "    ivec2 last = size_{0}() - 1;\n"
                    "    vec2 place = clamp(uv * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
                    "    place = round(place * 16384.0) / 16384.0;\n"
@@ -110,7 +110,7 @@ void write_filter(Text text, std::string_view name, std::string_view function = 
                    "    return mix(mix(load_{0}(low), load_{0}(ivec2(high.x, low.y)), weight.x),\n"
                    "               mix(load_{0}(ivec2(low.x, high.y)), load_{0}(high), weight.x), weight.y);\n"
                    "}}\n",
-                   name, function);
+                   name);
 }
 
 std::string_view place_of(const KernelImage& image) { return image.is_single ? "ivec2(0)" : "texel"; }
@@ -135,19 +135,6 @@ std::string texel_of(const KernelImage& image, bool has_quads, std::string_view 
     if (has_quads && image.is_depth)
         return fmt::format("texture({0}, (vec2(texel) + 0.5) / vec2(size_{0}()))", image.name);
     return fmt::format("texelFetch({}, {}{}, 0)", image.name, place_of(image), offset);
-}
-
-/// A region of one texel across has no two beside each other that a sampler could stay between: some look at the next
-/// one, with a weight of zero, wherever in it they are asked.
-constexpr std::string_view line_function = "bool darkroom_is_line(ivec2 size) { return min(size.x, size.y) == 1; }\n";
-std::string line_gather(std::string_view name, std::string_view prefix, std::string_view channel) {
-    return fmt::format(
-        "if (darkroom_is_line(size_{0}())) {{\n"
-        "        ivec2 low = ivec2(floor(uv * vec2(size_{0}()) - 0.5)), high = low + 1;\n"
-        "        return {1}vec4(load_clamped_{0}(ivec2(low.x, high.y)).{2}, load_clamped_{0}(high).{2},\n"
-        "                    load_clamped_{0}(ivec2(high.x, low.y)).{2}, load_clamped_{0}(low).{2});\n"
-        "    }}\n    ",
-        name, prefix, channel);
 }
 
 void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& image, std::uint32_t binding,
@@ -182,21 +169,16 @@ void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& i
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
         "vec2 darkroom_place_{0}(vec2 uv) {{\n{3}}}\n"
         "vec2 darkroom_corner_{0}(vec2 uv) {{\n{4}}}\n"
-        "{1}vec4 gather_red_{0}(vec2 uv) {{ {5}return textureGather({0}, darkroom_corner_{0}(uv), 0); }}\n"
-        "{1}vec4 gather_green_{0}(vec2 uv) {{ {6}return textureGather({0}, darkroom_corner_{0}(uv), 1); }}\n",
-        image.name, prefix, load, place, corner, is_whole ? "" : line_gather(image.name, prefix, "r"),
-        is_whole ? "" : line_gather(image.name, prefix, "g"));
+        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 0); }}\n"
+        "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 1); }}\n",
+        image.name, prefix, load, place, corner);
     if (image.is_filtered_by_loads) return write_filter(text, image.name);
-    const bool may_be_line = !is_whole && prefix.empty();
-    if (may_be_line) write_filter(text, image.name, "darkroom_line");
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.
     const std::string_view function = stage == Stage::Raster ? "texture" : "textureLod";
     const std::string_view level = stage == Stage::Raster ? "" : ", 0.0";
-    fmt::format_to(
-        text, "{1}vec4 sample_linear_{0}(vec2 uv) {{ {4}return {2}({0}, darkroom_place_{0}(uv){3}); }}\n", image.name,
-        prefix, function, level,
-        may_be_line ? fmt::format("if (darkroom_is_line(size_{0}())) return darkroom_line_{0}(uv); ", image.name) : "");
+    fmt::format_to(text, "{1}vec4 sample_linear_{0}(vec2 uv) {{ return {2}({0}, darkroom_place_{0}(uv){3}); }}\n",
+                   image.name, prefix, function, level);
 }
 
 /// To the nearest of the packed floats of 6 and 5 bits, so that no driver is left to cut off. The largest are those
@@ -363,7 +345,6 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
     write_quads(text, has_quads(spec, stage));
     write_blocks(text, spec, values);
     source += pixel_functions;
-    if (!spec.is_whole) source += line_function;
     std::uint32_t binding = first_image_binding;
     for (const KernelImage& image : spec.images) {
         if (image.storage_format != VK_FORMAT_UNDEFINED) {
