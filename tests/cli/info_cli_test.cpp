@@ -129,7 +129,7 @@ TEST_F(CliInfo, JitterThatWasLeftInMotionIsToldAsAWarning) {
 TEST_F(CliInfo, WhatTheDefaultLookLeavesOutIsThePlansWord) {
     const json with = document(path("frame.exr")).at("default_look"),
                without = document(path("picture.png")).at("default_look");
-    const std::string plan = run({"plan", "--ssao"}).out;
+    const std::string plan = run({"plan", "--ssao", "--input", path("picture.png")}).out;
     const auto count = [](const json& look) {
         return look.at("left_out").size() + look.at("would_be_left_out_if_on").size();
     };

@@ -518,9 +518,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
         "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
         "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
     command
-        .add_option("INPUT", options->inputs,
-                    "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.####.exr, shot.%04d.exr or shot.$F4.exr stands for all "
-                    "that match")
+        .add_option("INPUT", options->inputs, "Frames (EXR, HDR, PNG, JPEG, TIFF); ####, %04d or $F4 for all numbers")
         .required();
     command
         .add_option("-o,--output,--out", options->out,
@@ -529,9 +527,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
         .type_name("OUT")
         .required();
     command
-        .add_option("--size", options->size,
-                    "Develops at this size; the frame is resampled first, to within it, or with :fill or "
-                    ":stretch behind it, to all of it")
+        .add_option("--size", options->size, "Resamples the frame first, to within this size; :fill, :stretch: to it")
         .type_name("WxH[:fit|fill|stretch]");
     command
         .add_option("--output-size", options->output_size,
@@ -542,7 +538,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
     command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
     command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");
-    command.add_option("--gaps", options->gaps, "Of -o -, where frames are missing: hold the one before, or stop")
+    command.add_option("--gaps", options->gaps, "Of -o -, where one is missing: the one before, or the end")
         .type_name("hold|stop")
         .default_str("hold");
     options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");

@@ -59,7 +59,13 @@ Flag& Flag::needs(const Flag& other) {
 }
 
 Flag& Flag::names_look() {
-    option_->transform(CLI::Validator(find_shipped_look, ""));
+    // A name that is the command's own argument may be what follows an unknown flag, of which is told first.
+    option_->transform(CLI::Validator(
+        [is_own = option_->get_positional()](std::string& name) {
+            std::string error = find_shipped_look(name);
+            return is_own ? std::string() : error;
+        },
+        ""));
     return *this;
 }
 

@@ -13,9 +13,7 @@ using darkroom::Result;
 
 void FrameFlags::add_to(CommandFlags command) {
     const std::string group = "The frame";
-    command
-        .add_option("--map", maps_,
-                    "Name of a layer in the file: depth=NAME, normals=, velocity=, color=; none: read without it")
+    command.add_option("--map", maps_, "Layers: depth=NAME, normals=, velocity=, color=; NAME none: without it")
         .type_name("LAYER=NAME")
         .repeated()
         .group(group);

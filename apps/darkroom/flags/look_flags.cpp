@@ -110,9 +110,8 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
     if (has_look_flag)
         command
             .add_option("--look", file,
-                        "A look file (TOML), a scene (.scene.toml) for the look in it, or the name of a look that "
-                        "ships: night. Default: the scene's own, or the defaults, of which frames of files get no "
-                        "occlusion and no light in the air")
+                        "A look file (TOML), a scene with one, or the name of one that ships: night. Default: the "
+                        "scene's own, or the defaults, without occlusion and haze for files")
             .names_look()
             .type_name("FILE")
             .group(group);
@@ -121,10 +120,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
         .type_name("FILE")
         .repeated()
         .group(group);
-    command
-        .add_option("--ui", ui_file_,
-                    "The interface over the picture: an image with alpha, or an SVG document; --ui-... and "
-                    "--contrast-gamma-... are for it")
+    command.add_option("--ui", ui_file_, "The interface over the picture: an image with alpha, or an SVG document")
         .type_name("FILE")
         .group(group);
     command.add_option("--game", game_, "Value that a document's binding {{NAME}} shows: health=80")
@@ -144,10 +140,8 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
     command.add_flag("--no-postprocess", is_off_, "Leaves the look's exposure, default tone mapping and encoding")
         .group(group);
     command
-        .add_option(
-            "--effect", effect_files_,
-            "An effect of your own, behind the last place in the look where the picture is what it accepts; its "
-            "parameters are flags, too")
+        .add_option("--effect", effect_files_,
+                    "An effect of your own, as late in the look as it can be; it has flags, too")
         .type_name("FILE.glsl")
         .repeated()
         .group(group);

@@ -56,11 +56,7 @@ void WriteFlags::add_to(CommandFlags command) {
     const std::string group = "The files";
     command.add_option("--bits", bits_, "Samples of the file").type_name("8|16|half|float").group(group);
     space_.add_to(command, group);
-    command
-        .add_flag(
-            "--alpha", alpha_,
-            "Keeps alpha; without it pictures are opaque. --alpha=glow: in PNG and TIFF of integers light over what "
-            "is transparent has an alpha of its own")
+    command.add_flag("--alpha", alpha_, "Keeps alpha; --alpha=glow gives one to light over what is transparent")
         .group(group);
     command
         .add_option("--compression", compression_,

@@ -44,6 +44,8 @@ FrameFile frame_of(std::vector<FrameLight> lights) {
     for (std::size_t i = 0; i < 15; ++i) frame.depth->values[i] = 1.0F + static_cast<float>(i) / 3;
     for (std::size_t i = 0; i < 45; ++i) frame.normals->values[i] = static_cast<float>(i % 5) / 4 - 0.5F;
     frame.has_alpha = true;
+    // Normals of a world that nobody places are left out.
+    frame.camera.world_to_camera = Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     frame.time = 1.0 / 3;
     frame.lights = std::move(lights);
     return frame;
