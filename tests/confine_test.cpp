@@ -107,7 +107,8 @@ TEST_F(Confined, AProgramWhoseDecodersCannotBeConfinedSaysSo) {
                              scmp_arg_cmp{0, SCMP_CMP_EQ, PR_SET_SECCOMP, 0});
             if (seccomp_load(filter) != 0) ::_exit(99);
             ::dup2(::open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDERR_FILENO);
-            ::execl(program.c_str(), "darkroom", "develop", in.c_str(), "-q", "-o", out.c_str(), flag, nullptr);
+            ::execl(program.c_str(), "darkroom", "develop", in.c_str(), "--reference", "-q", "-o", out.c_str(), flag,
+                    nullptr);
             ::_exit(98);
         }
         int status = 0;

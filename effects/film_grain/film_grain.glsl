@@ -21,11 +21,11 @@ uvec3 film_grain_hash(uvec3 value) {
 // The three corners of a lattice of triangles around a place, how much each counts there, and where each has the tile, which
 // the frame decides, too. Heitz and Neyret, "High-Performance By-Example Noise using a Histogram-Preserving Blending
 // Operator", 2018, section 4: the eye finds neither a period nor a seam.
-struct FilmGrainCorners {
+struct film_grain_corners {
     vec2 shift[3];
     vec3 weights;
 };
-FilmGrainCorners film_grain_corners(vec2 place) {
+film_grain_corners film_grain_corners_around(vec2 place) {
     vec2 skewed = mat2(1.0, 0.0, -0.57735027, 1.15470054) * place / film_grain_lattice;
     vec2 within = fract(skewed);
     float rest = 1.0 - within.x - within.y;
@@ -33,7 +33,7 @@ FilmGrainCorners film_grain_corners(vec2 place) {
     ivec2 first = ivec2(floor(skewed)) + (is_upper ? 1 : 0);
     int step = is_upper ? -1 : 1;
     ivec2 corners[3] = ivec2[3](first, first + ivec2(step, 0), first + ivec2(0, step));
-    FilmGrainCorners result;
+    film_grain_corners result;
     result.weights = is_upper ? vec3(-rest, 1.0 - within) : vec3(rest, within);
     // Grains that know nothing of each other are as uneven together as one of them.
     result.weights *= inversesqrt(dot(result.weights, result.weights));
@@ -46,7 +46,7 @@ FilmGrainCorners film_grain_corners(vec2 place) {
 
 // The grain of the tones at a place. What is read between texels is less uneven than they are: by the variance of a mix of
 // two whose correlation is known.
-vec3 film_grain_at(vec2 place, FilmGrainCorners corners) {
+vec3 film_grain_at(vec2 place, film_grain_corners corners) {
     vec2 between = fract(place - 0.5);
     vec2 kept = 1.0 - film_grain_custom(0).zw * between * (1.0 - between);
     vec3 tones = vec3(0.0);
@@ -66,7 +66,7 @@ float film_grain_on(float value, vec3 grain) {
 
 vec4 film_grain(vec4 color, Pixel pixel, FilmGrain parameters) {
     vec2 place = (vec2(pixel.texel) + 0.5) * film_grain_custom(0).x;
-    FilmGrainCorners corners = film_grain_corners(place);
+    film_grain_corners corners = film_grain_corners_around(place);
     vec3 shared_grain = film_grain_at(place, corners);
     vec3 noise = vec3(film_grain_on(color.r, shared_grain), film_grain_on(color.g, shared_grain),
                       film_grain_on(color.b, shared_grain));

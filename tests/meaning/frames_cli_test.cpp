@@ -386,6 +386,14 @@ TEST_F(CliFrameMeaningOfNormals, WithoutACameraTheyAreKeptWhereTheDepthSaysWhatT
     const Outcome none = develop("world.exr", "out.png", {"--map", "normals=none", "--fov", "45"});
     EXPECT_EQ(none.code, 0);
     EXPECT_EQ(none.err, "");
+    const auto said = [&](const std::string& flag, const std::string& value) {
+        return develop("world.exr", "out.png", {flag, value, "--fov", "45"}).err;
+    };
+    EXPECT_NE(said("--normals-space", "world").find("normals are left out"), std::string::npos);
+    EXPECT_EQ(said("--normals-space", "view"), "") << "nothing is left to be measured";
+    EXPECT_NE(said("--normals-space", "eye").find("--normals-space eye: allowed is world, view"), std::string::npos);
+    EXPECT_NE(said("--up", "x").find("--up x: allowed is y, z"), std::string::npos);
+    EXPECT_EQ(said("--up", "z"), said("--up", "y")) << "without a camera there is no world to turn";
 }
 
 TEST_F(CliFrameMeaningOfNormals, BlendersAreOfAWorldWhoseZIsUp) {

@@ -27,8 +27,8 @@ thread_local std::uint64_t forbidden_calls = 0;
 thread_local std::uint64_t allocations_of_layers = 0;  ///< inside destroying calls, which are allowed
 thread_local VkPipeline last_pipeline = VK_NULL_HANDLE;
 thread_local std::uint64_t uploads = 0;
-[[maybe_unused]] thread_local std::uint64_t locks =
-    0;  ///< of mutexes; the thread sanitizer has a pthread_mutex_lock of its own
+/// Of mutexes. Sanitizers have a pthread_mutex_lock of their own.
+[[maybe_unused]] thread_local std::uint64_t locks = 0;
 thread_local VkImageLayout color_layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< that barriers left the host's colour in
 const auto host_color = reinterpret_cast<VkImage>(std::uintptr_t{16});
 
