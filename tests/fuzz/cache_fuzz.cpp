@@ -36,6 +36,10 @@ class Cache {
     [[nodiscard]] std::string_view whole() const {
         return {reinterpret_cast<const char*>(whole_.data()), whole_.size()};
     }
+    /// What stands before an entry's words: their hash under its name.
+    [[nodiscard]] Hash hash_of(std::string_view words) const {
+        return content_hash(entry_.stem().string().append(words));
+    }
     [[nodiscard]] std::string wrong_entry(std::string_view bytes) const {
         if (!write_file(entry_, bytes_of(bytes))) return "the entry cannot be written";
         const bool fits = bytes.size() > sizeof(Hash) && bytes.size() % sizeof(std::uint32_t) == 0 && hash_fits(bytes);
@@ -51,10 +55,10 @@ class Cache {
     }
 
   private:
-    static bool hash_fits(std::string_view bytes) {
+    [[nodiscard]] bool hash_fits(std::string_view bytes) const {
         Hash hash;
         std::memcpy(&hash, bytes.data(), sizeof hash);
-        return hash == content_hash(bytes.substr(sizeof hash));
+        return hash == hash_of(bytes.substr(sizeof hash));
     }
 
     ShaderSource source_{.name = "test", .text = "#version 460\nlayout(local_size_x = 1) in;\nvoid main() {}\n"};
@@ -73,7 +77,7 @@ std::string run(std::string_view input) {
     if (input.size() < sizeof(Hash)) return {};
     // No fuzzer finds a hash.
     std::string mended(input);
-    const Hash hash = content_hash(input.substr(sizeof(Hash)));
+    const Hash hash = cache().hash_of(input.substr(sizeof(Hash)));
     std::memcpy(mended.data(), &hash, sizeof hash);
     return cache().wrong_entry(mended);
 }
