@@ -111,7 +111,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
         command
             .add_option("--look", file,
                         "A look file (TOML), a scene with one, or the name of one that ships: night. Default: the "
-                        "scene's own, or the defaults, without occlusion and haze for files")
+                        "scene's, or the defaults, for files without occlusion and haze")
             .names_look()
             .type_name("FILE")
             .group(group);
