@@ -241,11 +241,11 @@ TEST(EffectAutoExposure, GpuNanAndInfinityAreBlackAndBright) {
 
 TEST(EffectAutoExposure, GpuFirstFrameCutAndStandstillAreSettled) {
     const ReferenceImage dark = grey_of(-2), bright = grey_of(3);
-    std::vector<Shot> cut = changing(dark, bright, 3, 1.0 / 60), jump = cut, pause = cut;
+    std::vector<Shot> cut = changing(dark, bright, 3, 1.0 / 60), jump = cut, standstill = cut;
     cut[2].camera.is_cut = true;
     jump[2].camera.view[12] = 31;  // metres
-    pause[2].delta_time = 0;
-    for (const std::vector<Shot>& shots : {cut, jump, pause})
+    standstill[2].delta_time = -1;
+    for (const std::vector<Shot>& shots : {cut, jump, standstill})
         for (const auto& out : {developed_sequence(stack_of({}), shots), reference_sequence(stack_of({}), shots)}) {
             EXPECT_NEAR(stops_of(out[0], dark), 2, 0.01);
             EXPECT_NEAR(stops_of(out[1], bright), 2, 0.01) << "it has not moved yet";

@@ -161,12 +161,12 @@ TEST(EffectAutofocus, GpuFollowsOneCurveAtEveryFrameRate) {
 }
 
 TEST(EffectAutofocus, GpuACutAJumpAndAStandstillAreSettled) {
-    std::vector<Shot> cut = changing(4, 1, 3, 1.0 / 60), jump = cut, pause = cut;
+    std::vector<Shot> cut = changing(4, 1, 3, 1.0 / 60), jump = cut, standstill = cut;
     cut[2].camera.is_cut = true;
     jump[2].camera.view[12] = 31;  // metres
     jump[3].camera.view[12] = 31;
-    pause[2].delta_time = 0;
-    for (const std::vector<Shot>& shots : {cut, jump, pause}) {
+    standstill[2].delta_time = -1;
+    for (const std::vector<Shot>& shots : {cut, jump, standstill}) {
         const auto out = dioptres_of(focusing(on_thing), shots);
         EXPECT_NEAR(out[0], 0.25, 1e-6);
         EXPECT_NEAR(out[1], 0.25, 1e-6) << "it has not moved yet";

@@ -86,12 +86,21 @@ TEST(EffectRecursiveBlend, EightBitsLeaveAGhostAndFloatsDoNot) {
     }
 }
 
+// A host that is paused, or a structure of zeros: as after the 1/60 s that weights are told for.
+TEST(EffectRecursiveBlend, AFrameAfterNoTimeFadesAsOneAfterASixtieth) {
+    std::vector<Shot> shots = changing(white, black, 4);
+    shots[2].delta_time = shots[3].delta_time = 0;
+    for (const std::vector<ReferenceImage>& out : {developed_sequence(stack_of({.weight = 0.8f}), shots),
+                                                   reference_sequence(stack_of({.weight = 0.8f}), shots)})
+        for (std::size_t i = 0; i < out.size(); ++i) EXPECT_NEAR(out[i].at(2, 1).g, std::pow(0.8, i), 1e-6) << i;
+}
+
 TEST(EffectRecursiveBlend, TheFirstFrameAndTheFirstAfterACutAreThePicture) {
-    std::vector<Shot> cut = changing(white, black, 3), jump = cut, pause = cut;
+    std::vector<Shot> cut = changing(white, black, 3), jump = cut, standstill = cut;
     cut[2].camera.is_cut = true;
     jump[2].camera.view[12] = 31;  // metres
-    pause[2].delta_time = 0;
-    for (const std::vector<Shot>& shots : {cut, jump, pause})
+    standstill[2].delta_time = -1;
+    for (const std::vector<Shot>& shots : {cut, jump, standstill})
         for (const std::vector<ReferenceImage>& out :
              {developed_sequence(stack_of({}), shots), reference_sequence(stack_of({}), shots)}) {
             EXPECT_EQ(test::worst_difference(out[0], white), 0);

@@ -223,9 +223,9 @@ class Composer {
     /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
     /// picture of an unbroken one: the sum of EffectInfo::pre_roll over the entries that are on, with their current
     /// values, because a history that is made from a picture with a history settles after it; and previous_pre_roll for
-    /// every picture that is read as the frame before, of which nobody knows when it settles. `delta_time`: seconds
-    /// between frames; where it is not above 0 every frame resets the histories, so 0. Needs no compile.
-    [[nodiscard]] std::uint32_t pre_roll(double delta_time = 1.0 / 60) const;
+    /// every picture that is read as the frame before, of which nobody knows when it settles. `delta_time`: as Frame
+    /// has it; below 0 every frame resets the histories, so 0. Needs no compile.
+    [[nodiscard]] std::uint32_t pre_roll(double delta_time = 0) const;
 
     // Layers and pulses (darkroom/modulation.hpp). Each lasts until its entry is removed, or another effect is there.
     /// Errors: an entry or parameter that is not there, one that is not made of numbers, a duration that is not above

@@ -152,6 +152,11 @@ struct Watched {
 enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Shadows, Ui, Reactive, Transparency, Exposure };
 inline constexpr std::size_t frame_image_count = 8;
 
+/// What `delta_time` means to effects: 0 is 1/60, so that a host that is paused, or says nothing, keeps its histories.
+[[nodiscard]] constexpr double seconds_between_frames(double delta_time) {
+    return delta_time == 0 ? 1.0 / 60 : delta_time;
+}
+
 /// One frame of one view.
 struct Frame {
     ImageRef color;  ///< scene-linear Rec. 709
@@ -168,8 +173,8 @@ struct Frame {
     ImageRef exposure;
     Camera camera;
     std::span<const Light> lights;
-    double time = 0;               ///< seconds
-    double delta_time = 1.0 / 60;  ///< seconds; <= 0 resets histories
+    double time = 0;        ///< seconds
+    double delta_time = 0;  ///< seconds since the frame before; 0: 1/60; below 0 resets histories
     std::uint64_t frame_index = 0;
     std::uint32_t view = 0;  ///< whose histories: 0 .. CompileDesc::views - 1
     ImageRef target;

@@ -166,7 +166,7 @@ Result<Frame> frame_of(const DarkroomFrame* given, DarkroomComposerObject& compo
     out.lights = composer.lights;
     out.watched = composer.watched;
     out.time = frame->time;
-    if (frame->delta_time != 0) out.delta_time = frame->delta_time;
+    out.delta_time = frame->delta_time;
     out.frame_index = frame->frame_index;
     out.view = frame->view;
     return out;

@@ -196,7 +196,7 @@ DarkroomResult darkroom_composer_values_at(DarkroomComposer composer, DarkroomHa
 DarkroomResult darkroom_composer_pre_roll(DarkroomComposer composer, double delta_time, uint32_t* frames) {
     return call("darkroom_composer_pre_roll", [&]() -> Result<> {
         if (auto ok = needs("composer", composer, "frames", frames); !ok) return ok;
-        *frames = delta_time == 0 ? composer->composer.pre_roll() : composer->composer.pre_roll(delta_time);
+        *frames = composer->composer.pre_roll(delta_time);
         return {};
     });
 }

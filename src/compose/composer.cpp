@@ -444,7 +444,8 @@ void Composer::drop_overrides(std::string_view owner) {
 }
 
 std::uint32_t Composer::pre_roll(double delta_time) const try {
-    if (!(delta_time > 0)) return 0;
+    const double seconds = seconds_between_frames(delta_time);
+    if (!(seconds > 0)) return 0;
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
         const EntryDesc& desc = entry->desc;
@@ -453,7 +454,7 @@ std::uint32_t Composer::pre_roll(double delta_time) const try {
         if (entry->info->pre_roll == nullptr) continue;
         std::vector<std::uint32_t> words(entry->base.size());
         if (entry->is_on(entry->evaluate(words, state_->last), words.data()))
-            frames += entry->info->pre_roll(words.data(), delta_time);
+            frames += entry->info->pre_roll(words.data(), seconds);
     }
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(frames, std::numeric_limits<std::uint32_t>::max()));
 } catch (...) {

@@ -38,7 +38,7 @@ struct DevelopInput {
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
-    double delta_time = 1.0 / 60;
+    double delta_time = 0;  ///< as Frame has it
     std::uint64_t frame_index = 0;
 };
 

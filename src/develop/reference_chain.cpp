@@ -121,7 +121,7 @@ class Chain {
         ReferenceHistories& kept = *input_.histories;
         const bool is_first = kept.camera == Matrix{};
         input_.camera.is_cut |= !is_first && compose::is_camera_jump(kept.camera, input_.camera);
-        if (is_first || input_.camera.is_cut || input_.delta_time <= 0) {
+        if (is_first || input_.camera.is_cut || !(seconds_between_frames(input_.delta_time) > 0)) {
             kept.entries.clear();
             kept.outputs.clear();
         }
@@ -397,7 +397,7 @@ class Chain {
                              .color = states_[from],
                              .camera = input_.camera,
                              .time = input_.time,
-                             .delta_time = input_.delta_time,
+                             .delta_time = seconds_between_frames(input_.delta_time),
                              .frame_index = input_.frame_index,
                              .output_width = output.width,
                              .output_height = output.height,

@@ -47,7 +47,7 @@ struct ReferenceChainInput {
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
-    double delta_time = 1.0 / 60;
+    double delta_time = 0;  ///< as Frame has it
     std::uint64_t frame_index = 0;
     ReferenceHistories* histories = nullptr;   ///< null: a frame by itself
     bool is_color_associated = false;          ///< as CompileDesc has it

@@ -44,7 +44,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
                               .frame_extent = extent,
                               .output_extent = extent,
                               .time = frame.time,
-                              .delta_time = frame.delta_time,
+                              .delta_time = seconds_between_frames(frame.delta_time),
                               .frame_index = frame.frame_index,
                               .camera = &camera,
                               .lights = frame.lights};
@@ -58,7 +58,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     note_watch_states();
     write_frame_block(frame);
     lend_images(frame);
-    physical_->prepare(values_.extents(), !camera.is_cut && frame.delta_time > 0, frame.view);
+    physical_->prepare(values_.extents(), !camera.is_cut && context.delta_time > 0, frame.view);
     physical_->histories(frame.view).staged.camera = frame.camera.view;
     schedule_->derive(values_.gates(), import_states_, physical_->frame(frame.view));
     find_histories(frame);
@@ -133,7 +133,7 @@ void Chain::write_frame_block(const Frame& frame) {
     std::array<std::uint32_t, plan::frame_words> words;
     // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
     words[0] = std::bit_cast<std::uint32_t>(static_cast<float>(std::fmod(frame.time, 3600.0)));
-    words[1] = std::bit_cast<std::uint32_t>(static_cast<float>(frame.delta_time));
+    words[1] = std::bit_cast<std::uint32_t>(static_cast<float>(seconds_between_frames(frame.delta_time)));
     words[2] = static_cast<std::uint32_t>(frame.frame_index);
     words[3] = frame.view;
     const plan::CameraBlock camera = plan::camera_block(frame.camera);

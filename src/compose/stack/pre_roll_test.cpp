@@ -146,7 +146,8 @@ TEST_F(ComposePreRoll, IsThatOfTheEntriesThatAreOnWithTheirCurrentValues) {
     const std::uint32_t of_usual = linger_pre_roll(&usual), of_brief = linger_pre_roll(&brief);
     EXPECT_GT(of_usual, of_brief);
     EXPECT_EQ(composer.pre_roll(), of_usual + of_brief);
-    for (const double none : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(composer.pre_roll(1.0 / 60), of_usual + of_brief) << "what 0, left out, means";
+    for (const double none : {-1.0, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_EQ(composer.pre_roll(none), 0u) << "every frame begins anew";
     must(composer.set_enabled(first, false));
     EXPECT_EQ(composer.pre_roll(), of_brief);
