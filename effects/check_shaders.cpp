@@ -11,10 +11,8 @@ int main(int argc, char** argv) {
     using namespace darkroom;
     std::vector<gpu::ShaderSource> sources;
     for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
-        // Of files with two forms, each is in one of both.
         const auto kernels =
-            every_kernel({.stage_of = [=](const gpu::KernelSpec&) { return Result<gpu::Stage>(stage); },
-                          .is_software = stage == gpu::Stage::Raster});
+            every_kernel({.stage_of = [=](const gpu::KernelSpec&) { return Result<gpu::Stage>(stage); }});
         if (!kernels) {
             std::fprintf(stderr, "error: %s\n", kernels.error().text.c_str());
             return 1;

@@ -123,7 +123,6 @@ gpu::KernelSpec tail_spec(const gpu::Context& context) {
                        {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
             .outputs = {target_format},
             .is_whole = true,
-            .is_software = context.traits.is_software,
             .members = {{gpu::BlockMember::Type::Float, "exposure"},
                         {gpu::BlockMember::Type::Float, "vignette_intensity"},
                         {gpu::BlockMember::Type::Float, "vignette_smoothness"},

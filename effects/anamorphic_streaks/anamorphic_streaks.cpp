@@ -51,7 +51,7 @@ void build(PassBuilder& builder) {
     for (std::size_t step = 0; step < constants.size(); ++step) {
         const std::string number = std::to_string(step + 1);
         const std::vector<PassImage> sides = builder.add_all({.name = "line " + number,
-                                                              .shader = "anamorphic_streaks_line.glsl",
+                                                              .shader = "anamorphic_streaks.glsl#line",
                                                               .inputs = inputs(),
                                                               .output = image("right " + number),
                                                               .more_outputs = {image("left " + number)},
@@ -62,12 +62,14 @@ void build(PassBuilder& builder) {
         left = sides[1];
     }
     KernelPassDesc join{.name = "join",
-                        .shader = "anamorphic_streaks_join.glsl",
+                        .shader = "anamorphic_streaks.glsl#join",
                         .inputs = inputs(),
                         .output = image("drawn"),
                         .custom_vectors = 2,
                         .constants = line_constants<anamorphic_streaks_steps - 1>};
-    join.inputs.push_back({.name = "anamorphic_streaks_light", .image = light});
+    // Not in the call: g++ 12 warns of its move.
+    const KernelPassDesc::Input own{.name = "anamorphic_streaks_light", .image = light};
+    join.inputs.push_back(own);
     builder.side("anamorphic_streaks_drawn", builder.add(join), {0, 0, 0, 0});
 }
 

@@ -28,13 +28,13 @@ void build(PassBuilder& builder) {
         return builder.create({.name = std::move(name), .denominator = denominator});
     };
     PassImage image = builder.add({.name = "bright part",
-                                   .shader = "arena_bloom_bright.glsl",
+                                   .shader = "arena_bloom.glsl#bright",
                                    .inputs = {{.name = "arena_bloom_source", .image = builder.source()}},
                                    .output = create("bright part", 4)});
     const std::uint32_t levels = builder.from_max_extent(arena_bloom_level_count);
     // The 3x3 filter (1 2 1 / 2 4 2 / 1 2 1) / 16 of bilinear taps one texel apart is the tent that halves.
     KernelPassDesc combine{.name = "combine",
-                           .shader = "arena_bloom_combine.glsl",
+                           .shader = "arena_bloom.glsl#combine",
                            .output = create("combine", 4),
                            .custom_vectors = 2,
                            .constants = weight_constants};
@@ -44,7 +44,7 @@ void build(PassBuilder& builder) {
         if (level < levels)
             image = builder.add({.name = "halve " + number,
                                  .shader = "shared/halve.glsl",
-                                 .inputs = {{.name = "halve_input", .image = image, .is_loaded = true}},
+                                 .inputs = {{.name = "halve_input", .image = image}},
                                  .output = create("level " + number, 8u << level)});
         combine.inputs.push_back({.name = "arena_bloom_level_" + number, .image = image});
     }

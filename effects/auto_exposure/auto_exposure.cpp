@@ -73,24 +73,23 @@ void build(PassBuilder& builder) {
                      adapted = builder.value("auto_exposure", adapted_numbers),
                      histogram = builder.value("auto_exposure.histogram", histogram_numbers);
     builder.add_compute({.name = "clear",
-                         .shader = "auto_exposure_clear.glsl",
+                         .shader = "auto_exposure.glsl#clear",
                          .inputs = {},
                          .buffers = {{"auto_exposure_counts", counts, Access::Write}},
                          .workgroup = {invocations, 1},
                          .groups = {numbers / invocations, 1}});
     const std::optional<PassImage> mask = mask_image(builder);
-    std::vector<KernelPassDesc::Input> inputs{
-        {.name = "auto_exposure_picture", .image = builder.source(), .is_loaded = true}};
+    std::vector<KernelPassDesc::Input> inputs{{.name = "auto_exposure_picture", .image = builder.source()}};
     if (mask) inputs.push_back({.name = "auto_exposure_mask", .image = *mask});
     builder.add_compute({.name = "count",
-                         .shader = mask ? "auto_exposure_count_masked.glsl" : "auto_exposure_count.glsl",
+                         .shader = mask ? "auto_exposure.glsl#count_masked" : "auto_exposure.glsl#count",
                          .inputs = inputs,
                          .buffers = {{"auto_exposure_counts", counts, Access::ReadWrite}},
                          .workgroup = {16, 8},
                          .shared_bytes = 4 * bins,
                          .tile = {64, 16}});
     builder.add_compute({.name = "adapt",
-                         .shader = "auto_exposure_adapt.glsl",
+                         .shader = "auto_exposure.glsl#adapt",
                          .inputs = {},
                          .buffers = {{"auto_exposure_counts", counts},
                                      {"auto_exposure_adapted", adapted, Access::ReadWrite, "float"},

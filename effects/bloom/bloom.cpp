@@ -109,34 +109,32 @@ bool is_level_used(const void* parameters, const PassContext& context, std::uint
 /// A kernel for each level, on the way down and up again.
 PassImage add_kernels(PassBuilder& builder, PassImage pyramid, std::uint32_t levels) {
     pyramid = builder.add({.name = "prefilter",
-                           .shader = "bloom_prefilter.glsl",
-                           .inputs = {{.name = "bloom_source", .image = builder.source(), .is_loaded = true}},
+                           .shader = "bloom.glsl#prefilter",
+                           .inputs = {{.name = "bloom_source", .image = builder.source()}},
                            .output = pyramid,
                            .custom_vectors = 2,
                            .constants = prefilter_constants,
                            .condition = is_level_used,
                            .argument = 0});
     for (std::uint32_t level = 1; level < levels; ++level)
-        pyramid = builder.add(
-            {.name = "downsample " + std::to_string(level),
-             .shader = level % 2 == 1 ? "bloom_downsample.glsl" : "bloom_downsample_texels.glsl",
-             .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1, .is_loaded = true}},
-             .output = pyramid,
-             .output_mip_level = level,
-             .condition = is_level_used,
-             .argument = level});
+        pyramid = builder.add({.name = "downsample " + std::to_string(level),
+                               .shader = level % 2 == 1 ? "bloom.glsl#downsample" : "bloom.glsl#downsample_texels",
+                               .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1}},
+                               .output = pyramid,
+                               .output_mip_level = level,
+                               .condition = is_level_used,
+                               .argument = level});
     for (std::uint32_t level = levels - 1; level-- > 0;)
-        pyramid = builder.add(
-            {.name = "upsample " + std::to_string(level),
-             .shader = "bloom_upsample.glsl",
-             .inputs = {{.name = "bloom_below", .image = pyramid, .mip_level = level + 1, .is_loaded = true}},
-             .output = pyramid,
-             .output_mip_level = level,
-             .is_additive = true,
-             .custom_vectors = 1,
-             .constants = gains[level],
-             .condition = is_level_used,
-             .argument = level + 1});
+        pyramid = builder.add({.name = "upsample " + std::to_string(level),
+                               .shader = "bloom.glsl#upsample",
+                               .inputs = {{.name = "bloom_below", .image = pyramid, .mip_level = level + 1}},
+                               .output = pyramid,
+                               .output_mip_level = level,
+                               .is_additive = true,
+                               .custom_vectors = 1,
+                               .constants = gains[level],
+                               .condition = is_level_used,
+                               .argument = level + 1});
     return pyramid;
 }
 
@@ -164,7 +162,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
         return made.empty() ? PassImage{} : made.back();
     };
     pyramid = add({.name = name("downsample", base + 1),
-                   .shader = "bloom_narrow.glsl",
+                   .shader = "bloom_tiles.glsl#narrow",
                    .inputs = {{.name = "bloom_level_0", .image = pyramid, .mip_level = base}},
                    .outputs = {{"bloom_level_1", pyramid, base + 1}, {"bloom_level_2", pyramid, base + 2}},
                    .shared_bytes = narrow_bytes,
@@ -178,7 +176,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
             builder.create({.name = name("wide levels", base), .format = format, .denominator = 8u << base});
         sum = {.name = "bloom_sum",
                .image = add({.name = name("wide levels", base),
-                             .shader = "bloom_wide.glsl",
+                             .shader = "bloom_tiles.glsl#wide",
                              .inputs = {{.name = "bloom_level_2", .image = pyramid, .mip_level = base + 2}},
                              .outputs = {{"bloom_sum", wide}},
                              .shared_bytes = wide_bytes,
@@ -186,7 +184,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
                             threads, wide_gains[base / 2])};
     }
     return add({.name = name("upsample", base),
-                .shader = "bloom_join.glsl",
+                .shader = "bloom_tiles.glsl#join",
                 .inputs = {{.name = "bloom_level_1", .image = pyramid, .mip_level = base + 1}, sum},
                 .outputs = {{"bloom_level_0", pyramid, base}},
                 .shared_bytes = join_bytes,
@@ -199,7 +197,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
 PassImage add_tiles(PassBuilder& builder, PassImage pyramid, std::uint32_t levels, VkFormat format) {
     const std::vector<PassImage> made =
         builder.add_compute({.name = "prefilter",
-                             .shader = "bloom_prefilter_pairs.glsl",
+                             .shader = "bloom.glsl#prefilter_pairs",
                              .inputs = {{.name = "bloom_source", .image = builder.source()}},
                              .outputs = {{"bloom_level_0", pyramid}},
                              .workgroup = {8, 16},
@@ -235,9 +233,9 @@ void build(PassBuilder& builder) {
                                               .format = format,
                                               .denominator = 2,
                                               .mip_levels = has_tiles ? stored_levels(levels) : levels});
-    builder.loaded_side("bloom_pyramid",
-                        has_tiles ? add_tiles(builder, pyramid, levels, format) : add_kernels(builder, pyramid, levels),
-                        neutral);
+    builder.side("bloom_pyramid",
+                 has_tiles ? add_tiles(builder, pyramid, levels, format) : add_kernels(builder, pyramid, levels),
+                 neutral);
 }
 
 bool is_identity(const void* parameters) { return bloom_of(parameters).intensity == 0.0f; }

@@ -45,7 +45,7 @@ inline double bloom_reference_threshold(double brightness, double threshold, dou
 
 /// The half-size image: five overlapping boxes of four bilinear taps each. With `firefly_filter` every box is weighted
 /// by 1 / (1 + luminance) (Brian Karis, "Tone mapping", 2013), and the sum divided by the sum of the weights. Where
-/// both sides of the source are odd, the rows of taps lie elsewhere: see bloom_downsample.glsl.
+/// both sides of the source are odd, the rows of taps lie elsewhere: see bloom.glsl#downsample.
 inline ReferenceImage bloom_reference_down(const ReferenceImage& image, bool firefly_filter) {
     ReferenceImage out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u));
     struct Box {

@@ -38,7 +38,7 @@ void build(PassBuilder& builder) {
             const std::string name = (is_horizontal ? "horizontal " : "vertical ") + std::to_string(i);
             image = builder.add({.name = name,
                                  .shader = "box_blur_line.glsl",
-                                 .inputs = {{.name = "box_blur_input", .image = image, .is_loaded = true}},
+                                 .inputs = {{.name = "box_blur_input", .image = image}},
                                  .output = builder.create({.name = name}),
                                  .custom_vectors = 1,
                                  .constants = is_horizontal ? line_constants<true> : line_constants<false>});

@@ -12,7 +12,23 @@ vec3 box_blur_texels(Pixel pixel, ivec2 offset, bool is_clean) {
            box_blur_clean(load_clamped(box_blur_input, pixel.texel + offset), is_clean);
 }
 
-#include "box_blur_sides.glsl"
+// A bilinear tap between two texels reads their mean.
+vec3 box_blur_taps(Pixel pixel, float offset) {
+    vec2 offset_uv = custom[0].xy * offset / vec2(pixel.size);
+    return sample_linear(box_blur_input, pixel.uv - offset_uv).rgb +
+           sample_linear(box_blur_input, pixel.uv + offset_uv).rgb;
+}
+
+// A tap also looks at pixels that count nothing, which may be NaN: where one is near, all are loaded.
+vec3 box_blur_sides(Pixel pixel, int radius, vec3 sum, bool is_clean) {
+    if (!is_clean) {
+        for (int i = 1; i <= radius; ++i) sum += box_blur_texels(pixel, ivec2(custom[0].xy) * i, is_clean);
+        return sum;
+    }
+    for (int i = 1; i < radius; i += 2) sum += 2.0 * box_blur_taps(pixel, float(i) + 0.5);
+    if ((radius & 1) == 1) sum += box_blur_texels(pixel, ivec2(custom[0].xy) * radius, is_clean);
+    return sum;
+}
 
 vec3 box_blur_mean(Pixel pixel, vec4 own, bool is_clean) {
     BoxBlur blur = box_blur_parameters();

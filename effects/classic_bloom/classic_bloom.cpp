@@ -39,12 +39,12 @@ void weight_constants(const void* parameters, const PassContext& context, std::s
 void build(PassBuilder& builder) {
     const bool is_layer = bloom_of(builder.parameters()).source_kind == ClassicBloomSource::Layer;
     KernelPassDesc extract{.name = "extract",
-                           .shader = is_layer ? "classic_bloom_layer.glsl" : "classic_bloom_bright.glsl",
+                           .shader = is_layer ? "classic_bloom.glsl#layer" : "classic_bloom.glsl#bright",
                            .inputs = {{.name = "classic_bloom_source", .image = builder.source()}},
                            .output = builder.create({.name = "extracted", .denominator = 4})};
     if (is_layer) extract.inputs.push_back({.name = "classic_bloom_picture", .image = builder.picture()});
     const PassImage wide = builder.add({.name = "horizontal",
-                                        .shader = "classic_bloom_horizontal.glsl",
+                                        .shader = "classic_bloom.glsl#horizontal",
                                         .inputs = {{.name = "classic_bloom_small", .image = builder.add(extract)}},
                                         .output = builder.create({.name = "wide", .denominator = 2}),
                                         .custom_vectors = vectors,

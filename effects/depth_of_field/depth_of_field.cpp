@@ -48,7 +48,7 @@ float largest_circle(const DepthOfField& field, const PassContext& context) {
     return field.max_radius / 100 * static_cast<float>(context.frame_extent.height);
 }
 
-/// See depth_of_field_focus.glsl.
+/// See depth_of_field.glsl#focus.
 void focus_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const DepthConstants depth = depth_constants(*context.camera);
     const double way = std::max(context.delta_time, 0.0) * double{field_of(parameters).autofocus_speed};
@@ -57,7 +57,7 @@ void focus_constants(const void* parameters, const PassContext& context, std::sp
               static_cast<float>(autofocus_nearest)};
 }
 
-/// See depth_of_field_focused.glsl.
+/// See depth_of_field.glsl#focused.
 void focused_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const DepthOfField& field = field_of(parameters);
     const DepthConstants depth = depth_constants(*context.camera);
@@ -68,14 +68,14 @@ void focused_constants(const void* parameters, const PassContext& context, std::
     out[2] = {static_cast<float>(lens.nearest), 0, 0, 0};
 }
 
-/// See depth_of_field_circle.glsl.
+/// See depth_of_field.glsl.
 template <std::uint32_t denominator, bool is_focused>
 void circle_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const DepthOfField& field = field_of(parameters);
     constexpr float pixels{denominator};
     const float limit = largest_circle(field, context);
     if (is_focused) {
-        // The depth is what depth_of_field_focused.glsl made of it.
+        // The depth is what depth_of_field.glsl#focused made of it.
         out[0] = {0, 1, 1, 0};
         out[1] = {limit / pixels, 1 / pixels, limit / pixels, -1};
     } else {
@@ -92,7 +92,7 @@ void circle_constants(const void* parameters, const PassContext& context, std::s
 
 constexpr std::uint32_t most_pairs = 2 * most_rings * (most_rings + 1);
 
-/// See depth_of_field_gather.glsl.
+/// See depth_of_field.glsl#gather.
 template <std::uint32_t denominator>
 void gather_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const DepthOfField& field = field_of(parameters);
@@ -118,20 +118,20 @@ PassImage add_tiles(PassBuilder& builder, PassImage color) {
         return builder.add(
             {.name = name,
              .shader = shader,
-             .inputs = {{.name = "depth_of_field_from", .image = from, .is_loaded = true}},
+             .inputs = {{.name = "depth_of_field_from", .image = from}},
              .output = builder.create({.name = name, .format = VK_FORMAT_R16_SFLOAT, .denominator = denominator})});
     };
-    const PassImage small = add("small tiles", "depth_of_field_first_tiles.glsl", color, 8);
-    const PassImage tiles = add("tiles", "depth_of_field_tiles.glsl", small, tile);
-    return add("tiles around", "depth_of_field_around.glsl", tiles, tile);
+    const PassImage small = add("small tiles", "depth_of_field.glsl#first_tiles", color, 8);
+    const PassImage tiles = add("tiles", "depth_of_field.glsl#tiles", small, tile);
+    return add("tiles around", "depth_of_field.glsl#around", tiles, tile);
 }
 
 /// Focuses, and makes of the depth what the other passes then take for it.
 PassImage add_autofocus(PassBuilder& builder, PassImage depth) {
     const PassBuffer focus = builder.value("depth_of_field", 3);
     builder.add_compute({.name = "focus",
-                         .shader = "depth_of_field_focus.glsl",
-                         .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                         .shader = "depth_of_field.glsl#focus",
+                         .inputs = {{.name = "depth_of_field_depth", .image = depth}},
                          .buffers = {{"depth_of_field_focus", focus, ComputePassDesc::Access::ReadWrite, "float"}},
                          .workgroup = {32, 1},
                          .shared_bytes = 4 * autofocus_side * autofocus_side,
@@ -139,8 +139,8 @@ PassImage add_autofocus(PassBuilder& builder, PassImage depth) {
                          .custom_vectors = 2,
                          .constants = focus_constants});
     return builder.add({.name = "focused",
-                        .shader = "depth_of_field_focused.glsl",
-                        .inputs = {{.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                        .shader = "depth_of_field.glsl#focused",
+                        .inputs = {{.name = "depth_of_field_depth", .image = depth}},
                         .output = builder.create({.name = "focused", .format = VK_FORMAT_R32_SFLOAT}),
                         .values = {{"depth_of_field_focus", focus}},
                         .custom_vectors = 3,
@@ -154,18 +154,18 @@ void build_at(PassBuilder& builder) {
     const auto create = [&](const char* name) { return builder.create({.name = name, .denominator = denominator}); };
     const PassImage color =
         builder.add({.name = denominator == 2 ? "half size" : "clean",
-                     .shader = denominator == 2 ? "depth_of_field_half.glsl" : "depth_of_field_clean.glsl",
-                     .inputs = {{.name = "depth_of_field_picture", .image = builder.picture(), .is_loaded = true},
-                                {.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                     .shader = denominator == 2 ? "depth_of_field.glsl#half" : "depth_of_field.glsl#clean",
+                     .inputs = {{.name = "depth_of_field_picture", .image = builder.picture()},
+                                {.name = "depth_of_field_depth", .image = depth}},
                      .output = create("color and circle"),
                      .custom_vectors = 3,
                      .constants = circle_constants<denominator, is_focused>});
     const PassImage tiles = add_tiles(builder, color);
     const std::vector<PassImage> gathered =
         builder.add_all({.name = "gather",
-                         .shader = "depth_of_field_gather.glsl",
-                         .inputs = {{.name = "depth_of_field_color", .image = color, .is_loaded = true},
-                                    {.name = "depth_of_field_near_tiles", .image = tiles, .is_loaded = true}},
+                         .shader = "depth_of_field.glsl#gather",
+                         .inputs = {{.name = "depth_of_field_color", .image = color},
+                                    {.name = "depth_of_field_near_tiles", .image = tiles}},
                          .output = create("behind"),
                          .more_outputs = {create("near")},
                          .custom_vectors = 2 + most_pairs,
@@ -173,18 +173,18 @@ void build_at(PassBuilder& builder) {
     if (gathered.size() < 2) return;
     const std::vector<PassImage> filled =
         builder.add_all({.name = "fill",
-                         .shader = "depth_of_field_fill.glsl",
-                         .inputs = {{.name = "depth_of_field_color", .image = color, .is_loaded = true},
-                                    {.name = "depth_of_field_near_tiles", .image = tiles, .is_loaded = true},
-                                    {.name = "depth_of_field_behind", .image = gathered[0], .is_loaded = true},
-                                    {.name = "depth_of_field_near", .image = gathered[1], .is_loaded = true}},
+                         .shader = "depth_of_field.glsl#fill",
+                         .inputs = {{.name = "depth_of_field_color", .image = color},
+                                    {.name = "depth_of_field_near_tiles", .image = tiles},
+                                    {.name = "depth_of_field_behind", .image = gathered[0]},
+                                    {.name = "depth_of_field_near", .image = gathered[1]}},
                          .output = create("behind, filled"),
                          .more_outputs = {create("near, filled")}});
     if (filled.size() < 2) return;
     builder.side("depth_of_field_behind", filled[0], {});
     builder.side("depth_of_field_near", filled[1], {});
-    builder.loaded_side("depth_of_field_depth", depth, {});
-    builder.loaded_side("depth_of_field_picture", builder.picture(), {});
+    builder.side("depth_of_field_depth", depth, {});
+    builder.side("depth_of_field_picture", builder.picture(), {});
     builder.end_constants(3, circle_constants<denominator, is_focused>);
 }
 

@@ -70,7 +70,7 @@ const EffectInfo& effect_info(const Fog&) {
         .is_in_traced_light = true,
         .build =
             [](PassBuilder& builder) {
-                builder.loaded_side("fog_depth", builder.frame_image(FrameImage::Depth), {});
+                builder.side("fog_depth", builder.frame_image(FrameImage::Depth), {});
                 builder.end_constants(3, fog_constants);
             },
         .reference = fog_reference,

@@ -52,16 +52,14 @@ std::vector<KernelPassDesc::Input> add_ring(PassBuilder& builder, PassImage smal
     const auto add_slot = [&](std::int32_t number, ConstantsFunction constants) {
         const std::string name = "slot " + std::to_string(number);
         const PassBuilder::History history = builder.history({.name = name, .denominator = denominator});
-        static_cast<void>(
-            builder.add({.name = name,
-                         .shader = "frame_blend_slot.glsl",
-                         .inputs = {{.name = "frame_blend_small", .image = small, .is_loaded = true},
-                                    {.name = "frame_blend_kept", .image = history.previous, .is_loaded = true}},
-                         .output = history.current,
-                         .custom_vectors = 1,
-                         .constants = constants}));
-        ring.push_back(
-            {.name = slot_names[static_cast<std::size_t>(number)], .image = history.previous, .is_loaded = true});
+        static_cast<void>(builder.add({.name = name,
+                                       .shader = "frame_blend.glsl#slot",
+                                       .inputs = {{.name = "frame_blend_small", .image = small},
+                                                  {.name = "frame_blend_kept", .image = history.previous}},
+                                       .output = history.current,
+                                       .custom_vectors = 1,
+                                       .constants = constants}));
+        ring.push_back({.name = slot_names[static_cast<std::size_t>(number)], .image = history.previous});
     };
     (add_slot(slot, slot_constants<slot>), ...);
     return ring;
@@ -70,14 +68,14 @@ std::vector<KernelPassDesc::Input> add_ring(PassBuilder& builder, PassImage smal
 void build(PassBuilder& builder) {
     const std::uint32_t denominator = blend_of(builder.parameters()).area == FrameBlendArea::Quarter ? 2 : 4;
     const PassImage small = builder.add({.name = "reduce",
-                                         .shader = "frame_blend_reduce.glsl",
+                                         .shader = "frame_blend.glsl#reduce",
                                          .inputs = {{.name = "frame_blend_picture", .image = builder.picture()}},
                                          .output = builder.create({.name = "small", .denominator = denominator})});
     std::vector<KernelPassDesc::Input> ring =
         add_ring(builder, small, denominator, std::make_integer_sequence<std::int32_t, frame_blend_slots>{});
     builder.side("frame_blend_past",
                  builder.add({.name = "sum",
-                              .shader = "frame_blend_sum.glsl",
+                              .shader = "frame_blend.glsl#sum",
                               .inputs = std::move(ring),
                               .output = builder.create({.name = "past", .denominator = denominator}),
                               .custom_vectors = 2,

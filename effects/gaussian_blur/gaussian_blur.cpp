@@ -92,14 +92,14 @@ PassImage add_lines(PassBuilder& builder, PassImage picture, std::uint32_t level
     const auto line = [&](const char* direction, const char* shader, PassImage from, ConstantsFunction constants) {
         const std::string name = std::string("gaussian_blur ") + direction;
         return builder.add({.name = name,
-                            .shader = level == 0 ? shader : "gaussian_blur_small.glsl",
-                            .inputs = {{.name = "gaussian_blur_input", .image = from, .is_loaded = true}},
+                            .shader = level == 0 ? shader : "gaussian_blur.glsl#small",
+                            .inputs = {{.name = "gaussian_blur_input", .image = from}},
                             .output = builder.create({.name = name, .denominator = 1u << level}),
                             .custom_vectors = vectors,
                             .constants = constants});
     };
-    const PassImage half_done = line("horizontal", "gaussian_blur_across.glsl", picture, line_constants<true>);
-    return line("vertical", "gaussian_blur_down.glsl", half_done, line_constants<false>);
+    const PassImage half_done = line("horizontal", "gaussian_blur.glsl#across", picture, line_constants<true>);
+    return line("vertical", "gaussian_blur.glsl#down", half_done, line_constants<false>);
 }
 
 void build(PassBuilder& builder) {
@@ -113,7 +113,7 @@ void build(PassBuilder& builder) {
         const std::string name = "halve " + std::to_string(i);
         image = builder.add({.name = name,
                              .shader = "shared/halve.glsl",
-                             .inputs = {{.name = "halve_input", .image = image, .is_loaded = true}},
+                             .inputs = {{.name = "halve_input", .image = image}},
                              .output = builder.create({.name = name, .denominator = 1u << i})});
     }
     image = add_lines(builder, image, level);
@@ -126,9 +126,9 @@ void build(PassBuilder& builder) {
     }
     if (level > 0)
         image = builder.add({.name = "gaussian_blur result",
-                             .shader = "gaussian_blur_result.glsl",
+                             .shader = "gaussian_blur.glsl#result",
                              .inputs = {{.name = "gaussian_blur_small", .image = image},
-                                        {.name = "gaussian_blur_picture", .image = picture, .is_loaded = true}},
+                                        {.name = "gaussian_blur_picture", .image = picture}},
                              .output = builder.create({.name = "gaussian_blur result"})});
     builder.result(image);
 }

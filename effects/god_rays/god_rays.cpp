@@ -70,17 +70,16 @@ PassImage sky_everywhere(PassBuilder& builder) {
 void build(PassBuilder& builder) {
     const PassImage distance =
         builder.has_frame_image(FrameImage::Depth) ? linear_depth(builder) : sky_everywhere(builder);
-    const PassImage mask =
-        builder.add({.name = "mask",
-                     .shader = "god_rays_mask.glsl",
-                     .inputs = {{.name = "god_rays_source", .image = builder.source(), .is_loaded = true},
-                                {.name = "god_rays_distance", .image = distance}},
-                     .output = builder.create({.name = "mask", .denominator = 4}),
-                     .custom_vectors = 2,
-                     .constants = mask_constants,
-                     .condition = is_seen});
+    const PassImage mask = builder.add({.name = "mask",
+                                        .shader = "god_rays.glsl#mask",
+                                        .inputs = {{.name = "god_rays_source", .image = builder.source()},
+                                                   {.name = "god_rays_distance", .image = distance}},
+                                        .output = builder.create({.name = "mask", .denominator = 4}),
+                                        .custom_vectors = 2,
+                                        .constants = mask_constants,
+                                        .condition = is_seen});
     const PassImage streaks = builder.add({.name = "march",
-                                           .shader = "god_rays_march.glsl",
+                                           .shader = "god_rays.glsl#march",
                                            .inputs = {{.name = "god_rays_mask", .image = mask}},
                                            .output = builder.create({.name = "streaks", .denominator = 4}),
                                            .custom_vectors = 2,

@@ -46,7 +46,7 @@ void build_kawase(PassBuilder& builder, std::size_t iterations) {
     for (std::size_t i = 0; i < iterations; ++i) {
         const std::string name = "corners " + std::to_string(i + 1);
         image = builder.add({.name = name,
-                             .shader = "kawase_blur_corners.glsl",
+                             .shader = "kawase_blur.glsl#corners",
                              .inputs = {{.name = "kawase_blur_input", .image = image}},
                              .output = builder.create({.name = name}),
                              .custom_vectors = 1,
@@ -66,12 +66,12 @@ void build_dual(PassBuilder& builder, std::uint32_t iterations) {
                             .custom_vectors = 1,
                             .constants = dual_constants};
         const bool is_last = level == 0;
-        if (is_last) desc.inputs.push_back({.name = "kawase_blur_picture", .image = picture, .is_loaded = true});
+        if (is_last) desc.inputs.push_back({.name = "kawase_blur_picture", .image = picture});
         image = builder.add(desc);
     };
-    for (std::uint32_t i = 1; i <= iterations; ++i) step("halve " + std::to_string(i), "kawase_blur_halve.glsl", i);
-    for (std::uint32_t i = iterations; i-- > 1;) step("double " + std::to_string(i), "kawase_blur_double.glsl", i);
-    step("result", "kawase_blur_result.glsl", 0);
+    for (std::uint32_t i = 1; i <= iterations; ++i) step("halve " + std::to_string(i), "kawase_blur.glsl#halve", i);
+    for (std::uint32_t i = iterations; i-- > 1;) step("double " + std::to_string(i), "kawase_blur.glsl#double", i);
+    step("result", "kawase_blur.glsl#result", 0);
     builder.result(image);
 }
 

@@ -73,7 +73,7 @@ TEST(EffectKawaseBlur, FourTapsAreTheMeanOfSixteenTexels) {
     EffectInfo info = effect_info(KawaseBlur{});
     info.build = [](PassBuilder& builder) {
         KernelPassDesc pass{.name = "four taps",
-                            .shader = "kawase_blur_corners.glsl",
+                            .shader = "kawase_blur.glsl#corners",
                             .inputs = {{.name = "kawase_blur_input", .image = builder.picture()}},
                             .output = builder.create({.name = "half", .denominator = 2}),
                             .custom_vectors = 1,
@@ -82,7 +82,7 @@ TEST(EffectKawaseBlur, FourTapsAreTheMeanOfSixteenTexels) {
                                           0.5f / static_cast<float>(context.output_extent.height), 0, 0};
                             }};
         pass.inputs[0].image = builder.add(pass);
-        pass.shader = "kawase_blur_double.glsl";
+        pass.shader = "kawase_blur.glsl#double";
         pass.output = builder.create({.name = "full"});
         pass.constants = [](const void*, const PassContext&, std::span<PassVector> out) { out[0] = {}; };
         builder.result(builder.add(pass));

@@ -52,7 +52,7 @@ void build(PassBuilder& builder) {
     if (lens.evaluation == LensDistortionEvaluation::Vertex)
         grid = warp_grid(builder, lens.grid,
                          {.name = "grid",
-                          .shader = "lens_distortion_grid.glsl",
+                          .shader = "lens_distortion.glsl#grid",
                           .custom_vectors = 2,
                           .constants = constants,
                           .condition = asks_for_grid});

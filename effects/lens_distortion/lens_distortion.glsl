@@ -1,6 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Any domain. custom(0) and custom(1): see lens_distortion_way.glsl; custom(0).w = taps.
-#include "lens_distortion_way.glsl"
+#part grid end
+// How far from uv green is read (xy), and red further than it, and blue less (zw), in uv. frame = (the picture's half
+// size where its half diagonal is 1, scale, ...), k = (coefficients of the squared distance and of its square, what is
+// added to the first for red, half the diagonal in pixels).
+
+vec4 lens_distortion_way(vec2 uv, vec4 frame, vec4 k) {
+    vec2 from_centre = uv - 0.5;
+    vec2 place = 2.0 * from_centre * frame.xy;
+    float squared = dot(place, place);
+    float green = frame.z * (1.0 + squared * (k.x + squared * k.y)) - 1.0;
+    return vec4(from_centre * green, from_centre * (frame.z * squared * k.z));
+}
+
+#part grid
+// The way in the vertices of the grid, in pixels.
+#include "shared/warp_grid.glsl"
+
+vec4 shade(Pixel pixel) {
+    vec2 extent = 2.0 * custom[0].xy * custom[1].w;
+    return lens_distortion_way(grid_vertex(pixel), custom[0], custom[1]) * extent.xyxy;
+}
+
+#part end
+// Any domain. custom(0) and custom(1): see lens_distortion.glsl; custom(0).w = taps.
 #include "shared/sanitize.glsl"
 #include "shared/warp_grid.glsl"
 

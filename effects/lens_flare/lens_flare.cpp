@@ -48,11 +48,11 @@ void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
     const PassImage bright = add_bright_light(builder, builder.source(), part, bright_constants);
     const PassImage light = builder.add({.name = "blur",
-                                         .shader = "lens_flare_blur.glsl",
+                                         .shader = "lens_flare.glsl#blur",
                                          .inputs = {{.name = "lens_flare_light", .image = bright}},
                                          .output = builder.create({.name = "light", .denominator = part})});
     const PassImage flare = builder.add({.name = "parts",
-                                         .shader = "lens_flare_parts.glsl",
+                                         .shader = "lens_flare.glsl#parts",
                                          .inputs = {{.name = "lens_flare_light", .image = light}},
                                          .output = builder.create({.name = "flare", .denominator = part}),
                                          .custom_vectors = 2 + most_ghosts,

@@ -95,13 +95,12 @@ PassImage add_motion(PassBuilder& builder, PassImage depth) {
     const bool is_given = builder.has_frame_image(FrameImage::Velocity);
     KernelPassDesc desc{
         .name = is_given ? "motion" : "motion of the camera",
-        .shader = is_given ? "motion_blur_given.glsl" : "motion_blur_camera.glsl",
-        .inputs = {{.name = "motion_blur_depth", .image = depth, .is_loaded = true}},
+        .shader = is_given ? "motion_blur.glsl#given" : "motion_blur.glsl#camera",
+        .inputs = {{.name = "motion_blur_depth", .image = depth}},
         .output = builder.create({.name = "motion", .denominator = denominator}),
         .custom_vectors = is_given ? 2u : 6u,
         .constants = is_given ? reach_constants<denominator, from> : camera_constants<denominator, from>};
-    if (is_given)
-        desc.inputs.push_back({.name = "motion_blur_velocity", .image = velocity(builder), .is_loaded = true});
+    if (is_given) desc.inputs.push_back({.name = "motion_blur_velocity", .image = velocity(builder)});
     return builder.add(desc);
 }
 
@@ -116,8 +115,8 @@ PassImage add_motion(PassBuilder& builder, bool is_half) {
 /// The picture as it is smeared.
 PassImage add_color(PassBuilder& builder, bool is_half) {
     KernelPassDesc desc{.name = is_half ? "half size" : "clean",
-                        .shader = is_half ? "motion_blur_half.glsl" : "motion_blur_clean.glsl",
-                        .inputs = {{.name = "motion_blur_picture", .image = builder.picture(), .is_loaded = true}},
+                        .shader = is_half ? "motion_blur.glsl#half" : "motion_blur.glsl#clean",
+                        .inputs = {{.name = "motion_blur_picture", .image = builder.picture()}},
                         .output = builder.create({.name = "color", .denominator = is_half ? 2u : 1u})};
     if (is_half) {
         desc.inputs.push_back({.name = "motion_blur_depth", .image = builder.frame_image(FrameImage::Depth)});
@@ -133,26 +132,25 @@ PassImage add_tiles(PassBuilder& builder, PassImage motion) {
     const auto add = [&](const char* name, const char* shader, PassImage from, std::uint32_t denominator) {
         return builder.add({.name = name,
                             .shader = shader,
-                            .inputs = {{.name = "motion_blur_from", .image = from, .is_loaded = true}},
+                            .inputs = {{.name = "motion_blur_from", .image = from}},
                             .output = builder.create({.name = name, .denominator = denominator})});
     };
-    const PassImage small = add("small tiles", "motion_blur_tiles.glsl", motion, 8);
-    const PassImage tiles = add("tiles", "motion_blur_tiles.glsl", small, tile);
-    return add("tiles around", "motion_blur_around.glsl", tiles, tile);
+    const PassImage small = add("small tiles", "motion_blur.glsl#tiles", motion, 8);
+    const PassImage tiles = add("tiles", "motion_blur.glsl#tiles", small, tile);
+    return add("tiles around", "motion_blur.glsl#around", tiles, tile);
 }
 
 void build(PassBuilder& builder) {
     const bool is_half = blur_of(builder.parameters()).resolution == MotionBlurResolution::Half;
     const PassImage motion = add_motion(builder, is_half);
-    builder.side(
-        "motion_blur_smeared",
-        builder.add({.name = "smear",
-                     .shader = "motion_blur_smear.glsl",
-                     .inputs = {{.name = "motion_blur_color", .image = add_color(builder, is_half), .is_loaded = true},
-                                {.name = "motion_blur_motion", .image = motion, .is_loaded = true},
-                                {.name = "motion_blur_fastest", .image = add_tiles(builder, motion)}},
-                     .output = builder.create({.name = "smeared", .denominator = is_half ? 2u : 1u})}),
-        {});
+    builder.side("motion_blur_smeared",
+                 builder.add({.name = "smear",
+                              .shader = "motion_blur.glsl#smear",
+                              .inputs = {{.name = "motion_blur_color", .image = add_color(builder, is_half)},
+                                         {.name = "motion_blur_motion", .image = motion},
+                                         {.name = "motion_blur_fastest", .image = add_tiles(builder, motion)}},
+                              .output = builder.create({.name = "smeared", .denominator = is_half ? 2u : 1u})}),
+                 {});
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ void build(PassBuilder& builder) {
     if (has_grid(p))
         grid = warp_grid(builder, p.grid,
                          {.name = "grid",
-                          .shader = "perturb_grid.glsl",
+                          .shader = "perturb.glsl#grid",
                           .inputs = {{.name = "perturb_distortion", .image = image}},
                           .custom_vectors = own_vectors + static_cast<std::uint32_t>(cpu_vertices + 1) / 2,
                           .constants = grid_constants,

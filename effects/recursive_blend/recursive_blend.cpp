@@ -29,14 +29,13 @@ void build(PassBuilder& builder) {
     const bool is_coarse = blend_of(builder.parameters()).precision == RecursiveBlendPrecision::EightBit;
     const PassBuilder::History history = builder.history(
         {.name = "trail", .format = is_coarse ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT});
-    builder.result(
-        builder.add({.name = "mix",
-                     .shader = "recursive_blend_mix.glsl",
-                     .inputs = {{.name = "recursive_blend_picture", .image = builder.picture(), .is_loaded = true},
-                                {.name = "recursive_blend_past", .image = history.previous, .is_loaded = true}},
-                     .output = history.current,
-                     .custom_vectors = 1,
-                     .constants = mix_constants}));
+    builder.result(builder.add({.name = "mix",
+                                .shader = "recursive_blend_mix.glsl",
+                                .inputs = {{.name = "recursive_blend_picture", .image = builder.picture()},
+                                           {.name = "recursive_blend_past", .image = history.previous}},
+                                .output = history.current,
+                                .custom_vectors = 1,
+                                .constants = mix_constants}));
 }
 
 /// The frames before the first one are missing with the weight that they would have. In 8 bits light that was there

@@ -90,8 +90,8 @@ TEST(EffectRecursiveBlend, EightBitsLeaveAGhostAndFloatsDoNot) {
 TEST(EffectRecursiveBlend, AFrameAfterNoTimeFadesAsOneAfterASixtieth) {
     std::vector<Shot> shots = changing(white, black, 4);
     shots[2].delta_time = shots[3].delta_time = 0;
-    for (const std::vector<ReferenceImage>& out : {developed_sequence(stack_of({.weight = 0.8f}), shots),
-                                                   reference_sequence(stack_of({.weight = 0.8f}), shots)})
+    for (const std::vector<ReferenceImage>& out :
+         {developed_sequence(stack_of({.weight = 0.8f}), shots), reference_sequence(stack_of({.weight = 0.8f}), shots)})
         for (std::size_t i = 0; i < out.size(); ++i) EXPECT_NEAR(out[i].at(2, 1).g, std::pow(0.8, i), 1e-6) << i;
 }
 

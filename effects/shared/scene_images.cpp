@@ -6,20 +6,19 @@ namespace darkroom {
 namespace {
 
 PassImage make_linear_depth(PassBuilder& builder) {
-    return builder.add(
-        {.name = "linear depth",
-         .shader = "shared/linear_depth.glsl",
-         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
-         .output = builder.create({.name = "linear depth", .format = VK_FORMAT_R32_SFLOAT}),
-         .custom_vectors = 2,
-         .constants = depth_vectors});
+    return builder.add({.name = "linear depth",
+                        .shader = "shared/linear_depth.glsl",
+                        .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth)}},
+                        .output = builder.create({.name = "linear depth", .format = VK_FORMAT_R32_SFLOAT}),
+                        .custom_vectors = 2,
+                        .constants = depth_vectors});
 }
 
 PassImage make_half_depth(PassBuilder& builder) {
     return builder.add(
         {.name = "half depth",
          .shader = "shared/half_depth.glsl",
-         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
+         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth)}},
          .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2}),
          .custom_vectors = 2,
          .constants = depth_vectors});
@@ -28,17 +27,16 @@ PassImage make_half_depth(PassBuilder& builder) {
 template <std::uint32_t step>
 PassImage make_surface_distance(PassBuilder& builder) {
     const char* const name = step == 1 ? "surface distance" : "half surface distance";
-    return builder.add(
-        {.name = name,
-         .shader = "shared/surface_distance.glsl",
-         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true},
-                    {.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true}},
-         .output = builder.create({.name = name, .format = VK_FORMAT_R32_SFLOAT, .denominator = step}),
-         .custom_vectors = 2,
-         .constants = [](const void* parameters, const PassContext& context, std::span<PassVector> out) {
-             depth_vectors(parameters, context, out);
-             out[1][1] = step == 1 ? 0.0f : 1.0f;
-         }});
+    return builder.add({.name = name,
+                        .shader = "shared/surface_distance.glsl",
+                        .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth)},
+                                   {.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals)}},
+                        .output = builder.create({.name = name, .format = VK_FORMAT_R32_SFLOAT, .denominator = step}),
+                        .custom_vectors = 2,
+                        .constants = [](const void* parameters, const PassContext& context, std::span<PassVector> out) {
+                            depth_vectors(parameters, context, out);
+                            out[1][1] = step == 1 ? 0.0f : 1.0f;
+                        }});
 }
 
 /// An image that an effect before asked for; else none.
@@ -70,13 +68,12 @@ void velocity_constants(const void*, const PassContext& context, std::span<PassV
 }
 
 PassImage make_velocity(PassBuilder& builder) {
-    return builder.add(
-        {.name = "velocity",
-         .shader = "shared/velocity.glsl",
-         .inputs = {{.name = "shared_velocity", .image = builder.frame_image(FrameImage::Velocity), .is_loaded = true}},
-         .output = builder.create({.name = "velocity", .format = VK_FORMAT_R16G16_SFLOAT}),
-         .custom_vectors = 1,
-         .constants = velocity_constants});
+    return builder.add({.name = "velocity",
+                        .shader = "shared/velocity.glsl",
+                        .inputs = {{.name = "shared_velocity", .image = builder.frame_image(FrameImage::Velocity)}},
+                        .output = builder.create({.name = "velocity", .format = VK_FORMAT_R16G16_SFLOAT}),
+                        .custom_vectors = 1,
+                        .constants = velocity_constants});
 }
 
 template <NormalSource source, std::uint32_t step>
@@ -94,19 +91,18 @@ void normal_constants(const void* parameters, const PassContext& context, std::s
 template <std::uint32_t step>
 PassImage make_given_normals(PassBuilder& builder) {
     const char* const name = step == 1 ? "view normals" : "half view normals";
-    return builder.add(
-        {.name = name,
-         .shader = "shared/view_normals.glsl",
-         .inputs = {{.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true}},
-         .output = builder.create({.name = name, .denominator = step}),
-         .custom_vectors = 1,
-         .constants = normal_constants<NormalSource::Image, step>});
+    return builder.add({.name = name,
+                        .shader = "shared/view_normals.glsl",
+                        .inputs = {{.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals)}},
+                        .output = builder.create({.name = name, .denominator = step}),
+                        .custom_vectors = 1,
+                        .constants = normal_constants<NormalSource::Image, step>});
 }
 
 PassImage make_normals(PassBuilder& builder) {
     return builder.add({.name = "view normals",
                         .shader = "shared/normals_from_depth.glsl",
-                        .inputs = {{.name = "shared_linear_depth", .image = linear_depth(builder), .is_loaded = true}},
+                        .inputs = {{.name = "shared_linear_depth", .image = linear_depth(builder)}},
                         .output = builder.create({.name = "view normals"}),
                         .custom_vectors = 2,
                         .constants = normal_constants<NormalSource::Depth, 1>});

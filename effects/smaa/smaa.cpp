@@ -26,22 +26,21 @@ void build(PassBuilder& builder) {
     const bool has_depth = static_cast<const Smaa*>(builder.parameters())->predication > 0.0f &&
                            builder.has_frame_image(FrameImage::Depth);
     KernelPassDesc edges{.name = "edges",
-                         .shader = has_depth ? "smaa_edges_depth.glsl" : "smaa_edges.glsl",
-                         .inputs = {{.name = "smaa_picture", .image = builder.picture(), .is_loaded = true}},
+                         .shader = has_depth ? "smaa.glsl#edges_depth" : "smaa.glsl#edges",
+                         .inputs = {{.name = "smaa_picture", .image = builder.picture()}},
                          .output = builder.create({.name = "edges", .format = VK_FORMAT_R8G8_UNORM})};
     if (has_depth) {
-        edges.inputs.push_back(
-            {.name = "smaa_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true});
+        edges.inputs.push_back({.name = "smaa_depth", .image = builder.frame_image(FrameImage::Depth)});
         edges.custom_vectors = 2;
         edges.constants = depth_vectors;
     }
     const PassImage found = builder.add(edges);
     const PassImage weights =
         builder.add({.name = "weights",
-                     .shader = "smaa_weights.glsl",
-                     .inputs = {{.name = "smaa_edges", .image = found, .is_loaded = true}},
+                     .shader = "smaa.glsl#weights",
+                     .inputs = {{.name = "smaa_edges", .image = found}},
                      .output = builder.create({.name = "weights", .format = VK_FORMAT_R8G8B8A8_UNORM})});
-    builder.loaded_side("smaa_weights", weights, {0, 0, 0, 0});
+    builder.side("smaa_weights", weights, {0, 0, 0, 0});
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Areas between an edge of pixels and the line that it stands for, in closed form: what smaa_line.glsl computes.
+// Areas between an edge of pixels and the line that it stands for, in closed form: what smaa.glsl computes.
 
 #include <algorithm>
 

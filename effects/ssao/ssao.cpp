@@ -122,38 +122,37 @@ PassImage add_chain(PassBuilder& builder, PassImage turns) {
     const auto distance_of = has_normals ? (is_half ? half_surface_distance : surface_distance) : half_depth;
     const PassImage distance = is_half || has_normals ? distance_of(builder, condition) : linear_depth(builder);
     const PassImage raw = builder.add({.name = "occlusion" + suffix,
-                                       .shader = "ssao_occlusion.glsl",
-                                       .inputs = {{.name = "ssao_distance", .image = distance, .is_loaded = true},
-                                                  {.name = "ssao_normals", .image = normals, .is_loaded = true},
+                                       .shader = "ssao_occlusion.glsl#occlusion",
+                                       .inputs = {{.name = "ssao_distance", .image = distance},
+                                                  {.name = "ssao_normals", .image = normals},
                                                   {.name = "ssao_turns", .image = turns}},
                                        .output = create("raw", VK_FORMAT_R32_SFLOAT),
                                        .custom_vectors = 7,
                                        .constants = occlusion_constants,
                                        .condition = condition});
-    const PassImage blurred = builder.add(
-        {.name = "blur" + suffix,
-         .shader = "ssao_blur.glsl",
-         .inputs = {{.name = "ssao_raw", .image = raw}, {.name = "ssao_normals", .image = normals, .is_loaded = true}},
-         .output = create("tile", VK_FORMAT_R32G32_SFLOAT),
-         .custom_vectors = 2,
-         .constants = surface_constants,
-         .condition = condition});
-    const PassImage widened = builder.add({.name = "widen" + suffix,
-                                           .shader = "ssao_widen.glsl",
-                                           .inputs = {{.name = "ssao_tile", .image = blurred, .is_loaded = true},
-                                                      {.name = "ssao_normals", .image = normals, .is_loaded = true}},
-                                           .output = create("blurred", VK_FORMAT_R32G32_SFLOAT),
-                                           .custom_vectors = 2,
-                                           .constants = surface_constants,
-                                           .condition = condition});
+    const PassImage blurred =
+        builder.add({.name = "blur" + suffix,
+                     .shader = "ssao.glsl#blur",
+                     .inputs = {{.name = "ssao_raw", .image = raw}, {.name = "ssao_normals", .image = normals}},
+                     .output = create("tile", VK_FORMAT_R32G32_SFLOAT),
+                     .custom_vectors = 2,
+                     .constants = surface_constants,
+                     .condition = condition});
+    const PassImage widened =
+        builder.add({.name = "widen" + suffix,
+                     .shader = "ssao.glsl#widen",
+                     .inputs = {{.name = "ssao_tile", .image = blurred}, {.name = "ssao_normals", .image = normals}},
+                     .output = create("blurred", VK_FORMAT_R32G32_SFLOAT),
+                     .custom_vectors = 2,
+                     .constants = surface_constants,
+                     .condition = condition});
     if (!is_half) return widened;
     std::vector<KernelPassDesc::Input> inputs{{.name = "ssao_blurred", .image = widened},
                                               {.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth)}};
     if (has_normals)
-        inputs.push_back(
-            {.name = "ssao_frame_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true});
+        inputs.push_back({.name = "ssao_frame_normals", .image = builder.frame_image(FrameImage::Normals)});
     return builder.add({.name = "upsample",
-                        .shader = has_normals ? "ssao_upsample_by_normals.glsl" : "ssao_upsample.glsl",
+                        .shader = has_normals ? "ssao.glsl#upsample_by_normals" : "ssao.glsl#upsample",
                         .inputs = std::move(inputs),
                         .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
                         .custom_vectors = 2,
@@ -175,10 +174,10 @@ void build(PassBuilder& builder) {
                     .data = std::vector<std::byte>(turns.size() * sizeof turns[0])};
     std::memcpy(table.data.data(), turns.data(), table.data.size());
     const PassImage turns_table = builder.table(table);
-    builder.loaded_side("ssao_half", add_chain<SsaoResolution::Half>(builder, turns_table), {1, 1, 1, 1});
+    builder.side("ssao_half", add_chain<SsaoResolution::Half>(builder, turns_table), {1, 1, 1, 1});
     // All its last ten bits are set: visible.
-    builder.loaded_side("ssao_full", add_chain<SsaoResolution::Full>(builder, turns_table),
-                        {std::bit_cast<float>(0x3F8003FFu), 0, 0, 0});
+    builder.side("ssao_full", add_chain<SsaoResolution::Full>(builder, turns_table),
+                 {std::bit_cast<float>(0x3F8003FFu), 0, 0, 0});
 }
 
 std::string conflict(const void* parameters) {

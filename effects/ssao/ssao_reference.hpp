@@ -15,7 +15,7 @@
 
 namespace darkroom {
 
-/// Equation 7 of Jimenez et al. (ssao_horizon.glsl) from the surface's plane to the view vector, by the sine of the
+/// Equation 7 of Jimenez et al. (ssao_occlusion.glsl) from the surface's plane to the view vector, by the sine of the
 /// angle n between normal and view vector, positive toward the plane: cos n + (n + pi / 2) sin n, within 0.01.
 [[nodiscard]] inline double ssao_arc(double sine) {
     const double squared = sine * sine;

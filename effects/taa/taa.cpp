@@ -72,8 +72,8 @@ void motion_constants(const void*, const PassContext& context, std::span<PassVec
 
 PassImage motion_of_camera(PassBuilder& builder, PassImage distance) {
     return builder.add({.name = "motion of the camera",
-                        .shader = "taa_motion.glsl",
-                        .inputs = {{.name = "taa_distance", .image = distance, .is_loaded = true}},
+                        .shader = "taa.glsl#motion",
+                        .inputs = {{.name = "taa_distance", .image = distance}},
                         .output = builder.create({.name = "motion", .format = VK_FORMAT_R16G16_SFLOAT}),
                         .custom_vectors = 6,
                         .constants = motion_constants});
@@ -89,18 +89,15 @@ PassImage mask(PassBuilder& builder) {
     const PassImage reactive = builder.frame_image(FrameImage::Reactive);
     const bool has_transparency = builder.has_frame_image(FrameImage::Transparency);
     if (!has_transparency && !builder.has_frame_image(FrameImage::Reactive)) return reactive;
-    return builder.add(
-        {.name = "mask",
-         .shader = "taa_mask.glsl",
-         .inputs = {{.name = "taa_color", .image = builder.picture(), .is_loaded = true},
-                    {.name = "taa_transparency",
-                     .image = builder.frame_image(FrameImage::Transparency),
-                     .is_loaded = true},
-                    {.name = "taa_reactive", .image = reactive, .is_loaded = true},
-                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true}},
-         .output = builder.create({.name = "mask", .format = VK_FORMAT_R8G8_UNORM}),
-         .custom_vectors = 1,
-         .constants = has_transparency ? mask_constants<true> : mask_constants<false>});
+    return builder.add({.name = "mask",
+                        .shader = "taa.glsl#mask",
+                        .inputs = {{.name = "taa_color", .image = builder.picture()},
+                                   {.name = "taa_transparency", .image = builder.frame_image(FrameImage::Transparency)},
+                                   {.name = "taa_reactive", .image = reactive},
+                                   {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure)}},
+                        .output = builder.create({.name = "mask", .format = VK_FORMAT_R8G8_UNORM}),
+                        .custom_vectors = 1,
+                        .constants = has_transparency ? mask_constants<true> : mask_constants<false>});
 }
 
 void sharpen_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
@@ -109,13 +106,13 @@ void sharpen_constants(const void* parameters, const PassContext&, std::span<Pas
 
 void build(PassBuilder& builder) {
     const PassBuilder::History distance = builder.history({.name = "distance", .format = VK_FORMAT_R16_SFLOAT});
-    const PassImage inverse = builder.add(
-        {.name = "distance",
-         .shader = "taa_distance.glsl",
-         .inputs = {{.name = "taa_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
-         .output = distance.current,
-         .custom_vectors = 2,
-         .constants = depth_vectors});
+    const PassImage inverse =
+        builder.add({.name = "distance",
+                     .shader = "taa.glsl#distance",
+                     .inputs = {{.name = "taa_depth", .image = builder.frame_image(FrameImage::Depth)}},
+                     .output = distance.current,
+                     .custom_vectors = 2,
+                     .constants = depth_vectors});
     const PassImage motion =
         builder.has_frame_image(FrameImage::Velocity) ? velocity(builder) : motion_of_camera(builder, inverse);
     const VkFormat format = shown_format(builder);
@@ -124,13 +121,13 @@ void build(PassBuilder& builder) {
         builder.history({.name = "kept", .format = VK_FORMAT_R8G8_UNORM, .is_of_output = true});
     const std::vector<PassImage> made = builder.add_all(
         {.name = "gather",
-         .shader = "taa_gather.glsl",
-         .inputs = {{.name = "taa_color", .image = builder.picture(), .is_loaded = true},
-                    {.name = "taa_distance", .image = inverse, .is_loaded = true},
-                    {.name = "taa_distance_before", .image = distance.previous, .is_loaded = true},
-                    {.name = "taa_velocity", .image = motion, .is_loaded = true},
-                    {.name = "taa_mask", .image = mask(builder), .is_loaded = true},
-                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true},
+         .shader = "taa.glsl#gather",
+         .inputs = {{.name = "taa_color", .image = builder.picture()},
+                    {.name = "taa_distance", .image = inverse},
+                    {.name = "taa_distance_before", .image = distance.previous},
+                    {.name = "taa_velocity", .image = motion},
+                    {.name = "taa_mask", .image = mask(builder)},
+                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure)},
                     {.name = "taa_shown_before", .image = shown.previous},
                     {.name = "taa_kept_before", .image = kept.previous}},
          .output = shown.current,
@@ -142,14 +139,14 @@ void build(PassBuilder& builder) {
         builder.result(made.back());
         return;
     }
-    builder.result(builder.add(
-        {.name = "sharpen",
-         .shader = "taa_sharpen.glsl",
-         .inputs = {{.name = "taa_gathered", .image = made.back(), .is_loaded = true},
-                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true}},
-         .output = builder.create({.name = "sharp", .is_of_output = true}),
-         .custom_vectors = 1,
-         .constants = sharpen_constants}));
+    builder.result(
+        builder.add({.name = "sharpen",
+                     .shader = "taa.glsl#sharpen",
+                     .inputs = {{.name = "taa_gathered", .image = made.back()},
+                                {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure)}},
+                     .output = builder.create({.name = "sharp", .is_of_output = true}),
+                     .custom_vectors = 1,
+                     .constants = sharpen_constants}));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ inline std::uint32_t taa_pre_roll(const Taa& taa) {
 
 namespace taa {
 
-// The same numbers as in taa_gather.glsl and taa_mask.glsl.
+// The same numbers as in taa.glsl#gather and taa.glsl#mask.
 constexpr double edge = 0.03, nearer = 0.02, loss = 2.2, reach = 1.25, still_noise = 3, moving_noise = 0.5,
                  most_noise = 0.5, mask_per_change = 4;
 
@@ -272,7 +272,7 @@ class Gather {
     const ReferenceImage *shown_before_ = nullptr, *kept_before_ = nullptr, *distance_before_ = nullptr;
 };
 
-/// taa_sharpen.glsl.
+/// taa.glsl#sharpen.
 inline ReferenceImage sharpened(const ReferenceImage& picture, double strength, double unit) {
     const auto scaled = [](const Rgba& c, double scale) { return Rgba{c.r * scale, c.g * scale, c.b * scale, c.a}; };
     ReferenceImage shown = picture, out = picture;

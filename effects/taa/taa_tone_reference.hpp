@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// taa_tone.glsl in double precision, and the filter by which the past is read.
+// taa.glsl in double precision, and the filter by which the past is read.
 
 #include <algorithm>
 #include <array>

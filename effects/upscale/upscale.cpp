@@ -16,7 +16,7 @@ void build(PassBuilder& builder) {
     builder.result(builder.add(
         {.name = "upscale",
          .shader = "upscale_easu.glsl",
-         .inputs = {{.name = "upscale_picture", .image = builder.picture(), .is_loaded = true}},
+         .inputs = {{.name = "upscale_picture", .image = builder.picture()}},
          .output = builder.create({.name = "upscaled", .format = VK_FORMAT_UNDEFINED, .is_of_output = true})}));
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Any domain. The falloff is elliptical: distance is measured in uv, 1 at the corner.
-#include "vignette_power.glsl"
 
 vec4 vignette(vec4 color, Pixel pixel, Vignette parameters) {
     vec2 offset = pixel.uv - 0.5;
     float squared = 2.0 * dot(offset, offset);
     // d^s = (d^2)^(s/2), so no square root is taken.
-    float falloff = vignette_power(squared, 0.5 * parameters.smoothness);
+    float falloff = pow(squared, 0.5 * parameters.smoothness);
     return vec4(color.rgb * clamp(1.0 - falloff * parameters.intensity, 0.0, 1.0), color.a);
 }

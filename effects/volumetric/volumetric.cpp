@@ -83,7 +83,7 @@ void write_cascade(const Matrix& m, std::uint32_t resolution, const Ramp& world,
     }
 }
 
-/// What volumetric_march.glsl says of its vectors.
+/// What volumetric.glsl#march says of its vectors.
 template <std::uint32_t number>
 void march_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     std::ranges::fill(out, PassVector{});
@@ -142,8 +142,8 @@ void build(PassBuilder& builder) {
     PassImage light = builder.create({.name = "light", .denominator = 2});
     for (std::uint32_t number = 0; number < max_shadow_lights; ++number)
         light = builder.add({.name = "march " + std::to_string(number),
-                             .shader = "volumetric_march.glsl",
-                             .inputs = {{.name = "volumetric_distance", .image = distance, .is_loaded = true},
+                             .shader = "volumetric.glsl#march",
+                             .inputs = {{.name = "volumetric_distance", .image = distance},
                                         {.name = "volumetric_noise", .image = noise},
                                         {.name = "volumetric_shadow", .image = builder.shadow_map(number)}},
                              .output = light,
@@ -155,14 +155,14 @@ void build(PassBuilder& builder) {
     const auto blur = [&](const char* name, const char* shader, PassImage from) {
         return builder.add({.name = name,
                             .shader = shader,
-                            .inputs = {{.name = "volumetric_light", .image = from, .is_loaded = true}},
+                            .inputs = {{.name = "volumetric_light", .image = from}},
                             .output = builder.create({.name = name, .denominator = 2}),
                             .condition = is_lit});
     };
-    const PassImage half_done = blur("blur across", "volumetric_blur_x.glsl", light);
-    builder.loaded_side("volumetric_depth", builder.frame_image(FrameImage::Depth), {});
+    const PassImage half_done = blur("blur across", "volumetric.glsl#blur_x", light);
+    builder.side("volumetric_depth", builder.frame_image(FrameImage::Depth), {});
     builder.end_constants(2, depth_vectors);
-    builder.loaded_side("volumetric_shafts", blur("blur down", "volumetric_blur_y.glsl", half_done), {0, 0, 0, 0});
+    builder.side("volumetric_shafts", blur("blur down", "volumetric.glsl#blur_y", half_done), {0, 0, 0, 0});
 }
 
 }  // namespace

@@ -60,12 +60,11 @@ struct PassImageDesc {
 /// A pass of one kernel.
 struct KernelPassDesc {
     std::string name;         ///< label in plans and timings
-    std::string_view shader;  ///< file in the effect's folder, without folder: "bloom_downsample.glsl"
+    std::string_view shader;  ///< file in the effect's folder, and its part: "motion_blur.glsl#tiles"
     struct Input {
         std::string name;  ///< what the shader calls it
         PassImage image;
         std::uint32_t mip_level = 0;
-        bool is_loaded = false;  ///< load() of it shall be as cheap as it can be, beside sampling
     };
     std::vector<Input> inputs;
     PassImage output;
@@ -202,11 +201,6 @@ class PassBuilder {
     /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1
     /// image of `neutral` stands in.
     virtual void side(std::string name, PassImage image, PassVector neutral) = 0;
-    /// The same for an image that the end mostly loads: where loads are cheap, sample_linear() is four of them, and the
-    /// other functions that sample are not there.
-    virtual void loaded_side(std::string name, PassImage image, PassVector neutral) {
-        side(std::move(name), image, neutral);
-    }
     /// Vectors for the pointwise end, worked out on the CPU in every frame: its text reads them by
     /// `vec4 <effect>_custom(int)`. At most 96 together in one kernel.
     virtual void end_constants(std::uint32_t /*vectors*/, ConstantsFunction /*constants*/) {}

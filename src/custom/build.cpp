@@ -27,13 +27,10 @@ class Build {
         if (!from_.result.empty()) builder_.result(images_[from_.result]);
         if (!from_.end) return;
         if (from_.end->reads_light) builder_.end_constants(light_vectors, write_light);
-        for (const FileInput& input : from_.end->inputs) {
-            const plan::FrameInput* const of_frame = frame_row(input.name);
+        for (const std::string_view input : from_.end->inputs) {
+            const plan::FrameInput* const of_frame = frame_row(input);
             const PassVector neutral = of_frame == nullptr ? PassVector{} : of_frame->neutral;
-            if (input.is_loaded)
-                builder_.loaded_side(std::string(input.name), image(input.name), neutral);
-            else
-                builder_.side(std::string(input.name), image(input.name), neutral);
+            builder_.side(std::string(input), image(input), neutral);
         }
         for (const FileBufferUse& use : from_.end->buffers)
             builder_.value_side(std::string(use.name), buffers_[use.name]);
@@ -69,9 +66,8 @@ class Build {
     template <class Desc>
     Desc begin(const FileFunction& pass) {
         Desc desc{.name = std::string(pass.name), .shader = pass.shader};
-        for (const FileInput& input : pass.inputs)
-            desc.inputs.push_back(
-                {.name = std::string(input.name), .image = image(input.name), .is_loaded = input.is_loaded});
+        for (const std::string_view input : pass.inputs)
+            desc.inputs.push_back({.name = std::string(input), .image = image(input)});
         if (pass.reads_light) {
             desc.custom_vectors = light_vectors;
             desc.constants = write_light;

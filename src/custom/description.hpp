@@ -43,10 +43,6 @@ struct FileBuffer {
     bool is_written = false;
 };
 
-struct FileInput {
-    std::string_view name;
-    bool is_loaded = false;  ///< its function reads it by load() alone
-};
 struct FileBufferUse {
     std::string_view name;
     ComputePassDesc::Access access = ComputePassDesc::Access::Read;
@@ -57,7 +53,7 @@ struct FileFunction {
     std::string_view name;
     std::vector<std::string_view> outputs{};
     std::string_view shader{};  ///< in EffectInfo::files
-    std::vector<FileInput> inputs{};
+    std::vector<std::string_view> inputs{};
     std::vector<FileBufferUse> buffers{};
     std::size_t line = 0;
     bool reads_light = false;

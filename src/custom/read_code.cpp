@@ -60,18 +60,6 @@ bool names_word(std::string_view code, std::string_view name) {
     return is_named;
 }
 
-/// Does it stand in load(NAME, ...), load_clamped(NAME, ...) and size(NAME) alone?
-bool is_loaded_alone(std::string_view code, std::string_view name) {
-    bool is_loaded = false, is_sampled = false;
-    for_each_token(code, [&](const Token& token, const Token& before, const Token& function) {
-        if (token.kind != Token::Kind::Word || token.text != name) return;
-        const bool is_load = function.text == "load" || function.text == "load_clamped";
-        is_loaded |= is_load;
-        is_sampled |= before.text != "(" || (!is_load && function.text != "size");
-    });
-    return is_loaded && !is_sampled;
-}
-
 /// What stands for a name from its line on.
 struct Define {
     std::string_view name;
@@ -274,12 +262,11 @@ Result<> read_uses(const Description& from, FileFunction& function, std::string_
         if (!names_word(code, input.shader_name)) continue;
         if (!from.info.needs.contains(input.image))
             return user_error(fmt::format("{}: read without `@needs {}`", input.shader_name, input.name));
-        function.inputs.push_back({.name = input.shader_name});
+        function.inputs.push_back(input.shader_name);
     }
     if (function.inputs.size() > most_inputs)
         return user_error(fmt::format("{} images are read, of the frame and of the file; at most {} are allowed",
                                       function.inputs.size(), most_inputs));
-    for (FileInput& input : function.inputs) input.is_loaded = is_loaded_alone(code, input.name);
     return {};
 }
 

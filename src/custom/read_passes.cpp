@@ -137,7 +137,7 @@ Result<> check_input(Description& from, const std::string& reader, std::string_v
 Result<> read_inputs(Description& from, FileFunction& out, const std::string& reader, std::string_view text) {
     while (!text.empty()) {
         const std::string_view name = next_word(text);
-        if (std::ranges::find(out.inputs, name, &FileInput::name) != out.inputs.end() ||
+        if (std::ranges::find(out.inputs, name) != out.inputs.end() ||
             std::ranges::find(out.buffers, name, &FileBufferUse::name) != out.buffers.end())
             return user_error(fmt::format("{} reads '{}' twice", reader, printable(name)));
         if (const FileBuffer* const buffer = from.find_buffer(name)) {
@@ -150,7 +150,7 @@ Result<> read_inputs(Description& from, FileFunction& out, const std::string& re
             continue;
         }
         if (auto ok = check_input(from, reader, name); !ok) return ok;
-        out.inputs.push_back({.name = from.keep(name)});
+        out.inputs.push_back(from.keep(name));
         if (out.inputs.size() > most_inputs)
             return user_error(fmt::format("{} reads more than {} images", reader, most_inputs));
     }
@@ -280,7 +280,7 @@ Result<FileFunction> read_end(Description& out, std::string_view text) {
         return user_error(fmt::format("@end: the effect's picture is @result {}, it has no end", out.result));
     FileFunction end;
     if (auto ok = read_inputs(out, end, "@end", text); !ok) return failure(std::move(ok));
-    if (std::ranges::find(end.inputs, "picture", &FileInput::name) != end.inputs.end())
+    if (std::ranges::find(end.inputs, "picture") != end.inputs.end())
         return user_error("@end reads 'picture': the end has it as `color` already");
     return end;
 }

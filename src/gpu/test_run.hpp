@@ -115,8 +115,7 @@ inline void run_kernel(Context& context, const Kernel& kernel, const Run& run) {
         const VkFormat format = picture.image.info.format;
         images.push_back({.view = picture.image.mip_views[0],
                           .region = run.input_regions.empty() ? picture.whole() : run.input_regions[index],
-                          .is_nearest = spec.images[index].is_depth ||
-                                        !context.supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT)});
+                          .is_nearest = !context.supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT)});
     }
     const bool is_whole = run.output_region.extent.width == 0;
     const Region region = is_whole ? run.outputs.front()->whole() : run.output_region;

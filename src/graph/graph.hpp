@@ -22,10 +22,8 @@ namespace darkroom::graph {
 
 /// How a pass touches an image or a buffer. From it follow the stage, the access mask, the layout and the usage flags.
 enum class Use : std::uint8_t {
-    SampledCompute,         ///< texture() or texelFetch in a compute shader
-    SampledFragment,        ///< the same in a fragment shader
-    SampledGeneralCompute,  ///< sampled in GENERAL, where the same pass loads from it, too
-    SampledGeneralFragment,
+    SampledCompute,       ///< texture() or texelFetch in a compute shader
+    SampledFragment,      ///< the same in a fragment shader
     StorageRead,          ///< imageLoad in a compute shader
     StorageReadFragment,  ///< imageLoad in a fragment shader
     StorageWrite,         ///< imageStore, every texel of the region written: the old content is dropped
@@ -39,7 +37,7 @@ enum class Use : std::uint8_t {
     BufferReadWrite,  ///< the same, or by atomics: the old content is kept
     BufferCopy,       ///< copied out of
 };
-inline constexpr std::uint8_t use_count = 15;
+inline constexpr std::uint8_t use_count = 13;
 [[nodiscard]] bool is_of_buffers(Use use);
 [[nodiscard]] bool is_write(Use use);
 [[nodiscard]] bool keeps_content(Use use);  ///< a write that needs what was there before

@@ -100,11 +100,7 @@ struct Declaration {
 };
 
 /// One bit for what a use sees of a write: uses of the same stage and access see the same.
-[[nodiscard]] constexpr std::uint32_t sight_of(Use use) {
-    if (use == Use::SampledGeneralCompute) use = Use::SampledCompute;
-    if (use == Use::SampledGeneralFragment) use = Use::SampledFragment;
-    return 1u << static_cast<std::uint32_t>(use);
-}
+[[nodiscard]] constexpr std::uint32_t sight_of(Use use) { return 1u << static_cast<std::uint32_t>(use); }
 
 /// Everything that may have touched the memory of a slot before a frame's first use of it.
 struct Past {

@@ -92,8 +92,8 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
             if (is_used(source.image)) continue;
             used_images.push_back(source.image);
             constexpr Use any_reads[] = {Use::SampledCompute, Use::SampledFragment, Use::StorageRead,
-                                         Use::StorageReadFragment, Use::SampledGeneralCompute};
-            const Use use = source.is_constant || pick(2) == 0 ? any_reads[pick(2)] : any_reads[pick(5)];
+                                         Use::StorageReadFragment};
+            const Use use = source.is_constant || pick(2) == 0 ? any_reads[pick(2)] : any_reads[pick(4)];
             pass.reads.push_back({source.version, use, {pick(source.mip_levels), pick(2) == 0 ? 1 : ~0u}});
             if (pick(3) == 0) pass.reads.back().instead = pick(2) == 0 ? white : live[pick(live.size())].version;
         }

@@ -34,8 +34,6 @@ constexpr auto use_table = [] {
     return std::array<UseFacts, use_count>{
         {{compute, sampled, read_only, as_sampled},
          {fragment, sampled, read_only, as_sampled},
-         {compute, sampled, general, as_sampled},
-         {fragment, sampled, general, as_sampled},
          {compute, loaded, general, as_storage},
          {fragment, loaded, general, as_storage},
          {compute, stored, general, as_storage, true},

@@ -222,7 +222,7 @@ TEST(GraphTrace, HistoryMovesAfterTheReadersOfTheLastFrame) {
     Graph graph;
     const Graph::History history = graph.history(image("history"));
     graph.add({.name = "first", .reads = {{history.previous, Use::SampledFragment}}, .has_side_effect = true});
-    graph.add({.name = "second", .reads = {{history.previous, Use::SampledGeneralCompute}}, .has_side_effect = true});
+    graph.add({.name = "second", .reads = {{history.previous, Use::SampledCompute}}, .has_side_effect = true});
     const Version current = graph.add({.name = "write", .writes = {{history.current, Use::ColorWrite}}})[0];
     // Both stages see the content, so the frame ends without a barrier.
     graph.add({.name = "third", .reads = {{current, Use::SampledFragment}}, .has_side_effect = true});

@@ -234,10 +234,8 @@ Plan describe_frame(const Program& program, const graph::Compiled& compiled, con
             const auto [width, height] = compute->groups_of(out.extent);
             out.invocations = std::uint64_t{width} * height * pass.spec.workgroup[0] * pass.spec.workgroup[1];
         }
-        for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
-            const PassInput& input = pass.inputs[k];
-            // An image that is both loaded and sampled stands there twice.
-            if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
+        for (const PassInput& input : pass.inputs) {
+            if (input.table != no_table) continue;
             const std::uint32_t slot = schedule.slot_of(input.version, input.instead);
             out.bytes_read += bytes_of(compiled.slots()[slot], largest, input.mip_level);
             if (image_of[slot] != PlanImage::never) out.reads.push_back(use_of(slot, input.mip_level));

@@ -98,7 +98,6 @@ struct PassInput {
     std::uint32_t mip_level = 0;
     std::uint32_t table = no_table;  ///< index of Program::fixed_images
     bool is_shadow_map = false;
-    bool is_loaded = false;  ///< a side image that is read by load() alone
 };
 
 /// A kernel that the planner makes of entries that follow each other; it may have no step.
@@ -155,7 +154,6 @@ struct ProgramPass {
     std::int32_t toggle = -1;
     std::string boundary;
     std::vector<Literal> literals;
-    bool asks_sizes = false;
     bool asks_rays_meet = false;
 
     template <class Kind>
@@ -268,8 +266,7 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_load{};
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
-    bool is_software = false;          ///< see gpu/kernel/kernel.hpp
-    bool has_robust_images = false;    ///< likewise
+    bool has_robust_images = false;    ///< see gpu/kernel/kernel.hpp
     std::uint32_t sub_texel_bits = 4;  ///< likewise
     bool packing_pays = true;          ///< smaller pixels and shared memory save time, as on no software driver
     std::uint32_t max_image_side = 16384;

@@ -368,10 +368,7 @@ void Chain::fill_custom(const ProgramPass& pass, const PassContext& context, VkE
 void Chain::prepare_pass(std::uint32_t index, const Frame& frame, const PassContext& context) {
     const ProgramPass& pass = program_of().passes[index];
     std::array<gpu::Binding, gpu::most_images> images;
-    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        images[i] = bind(pass.inputs[i], frame);
-        if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
-    }
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) images[i] = bind(pass.inputs[i], frame);
     if (const auto watch = pass.watch())
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());

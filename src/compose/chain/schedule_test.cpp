@@ -159,7 +159,6 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
                 stack, desc,
                 {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
                  .can_load = [](VkFormat) { return true; },
-                 .is_software = true,
                  .max_storage_images = limit});
             EXPECT_TRUE(program);
             std::size_t worst = 0;
@@ -176,26 +175,6 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
         EXPECT_EQ(count(1), 1u) << "seed " << seed;
     }
     EXPECT_GT(most, 1u) << "nothing had to be limited";
-}
-
-TEST_F(ComposeSchedule, AWarpThatOnlyLoadsHasAStorageImageWhereLoadsAreCheap) {
-    for (const bool is_software : {true, false}) {
-        const auto format_of = [&](std::string_view effect) {
-            std::vector<Entry> stack;
-            stack.push_back(entry_of(effect, stack));
-            CompileDesc desc{.max_extent = {64, 64}};
-            desc.color.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-            const auto program = plan_program(
-                stack, desc,
-                {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
-                 .can_load = [](VkFormat) { return true; },
-                 .is_software = is_software});
-            EXPECT_TRUE(program);
-            return program->passes.front().spec.images.front().storage_format;
-        };
-        EXPECT_EQ(format_of("chromatic_aberration"), VK_FORMAT_UNDEFINED);
-        EXPECT_EQ(format_of("fxaa") != VK_FORMAT_UNDEFINED, is_software);
-    }
 }
 
 TEST_F(ComposeSchedule, TheDefaultStackHasNoTransientImagesButBlooms) {

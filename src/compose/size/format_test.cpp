@@ -168,7 +168,8 @@ TEST_F(ComposeFormat, WhatCannotBeFilteredTheKernelsFilter) {
     EXPECT_TRUE(fake.filtered.contains(whole_format));
     renew();
     fake.missing[whole_format] = fake.missing[single_format] = filter;
-    EXPECT_LE(test::worst_difference(enlarged(), expected), 1e-4 + 2 * gpu::test::filter_step());
+    // The blur keeps light up to 4 in halves between its passes: a place that is rounded may end in the next one.
+    EXPECT_LE(test::worst_difference(enlarged(), expected), 0x1p-9 + 2 * gpu::test::filter_step());
     EXPECT_TRUE(fake.sampled.contains(whole_format) && fake.sampled.contains(single_format));
     EXPECT_FALSE(fake.filtered.contains(whole_format));
     EXPECT_FALSE(fake.filtered.contains(single_format));

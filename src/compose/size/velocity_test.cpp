@@ -18,13 +18,12 @@ constexpr EffectFile files[] = {
      "    return vec4(load(moved_velocity, pixel.texel).rg, 0.0, 1.0);\n}\n"},
 };
 /// Shows the velocity that effects see.
-const EffectInfo moved{
-    .name = "moved",
-    .doc = "Shows velocity.",
-    .parameters = {.struct_name = "Moved"},
-    .files = files,
-    .needs = {FrameImage::Velocity},
-    .build = [](PassBuilder& builder) { builder.loaded_side("moved_velocity", velocity(builder), {}); }};
+const EffectInfo moved{.name = "moved",
+                       .doc = "Shows velocity.",
+                       .parameters = {.struct_name = "Moved"},
+                       .files = files,
+                       .needs = {FrameImage::Velocity},
+                       .build = [](PassBuilder& builder) { builder.side("moved_velocity", velocity(builder), {}); }};
 
 /// A point of the picture, in pixels from its top left, y down, as a projection without jitter shows it.
 struct Point {

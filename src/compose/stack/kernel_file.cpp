@@ -43,25 +43,11 @@ class Wanted {
         kernels_.push_back({spec.name, stage, std::move(text)});
     }
     [[nodiscard]] Result<> compile(gpu::ShaderCompiler& compiler, gpu::ShadersToBake& out) const {
-        std::vector<gpu::ShaderSource> sources, vertices;
+        std::vector<gpu::ShaderSource> sources;
         for (const Kernel& kernel : kernels_)
             sources.push_back(gpu::kernel_shader(kernel.name, kernel.stage, kernel.text));
-        if (auto ok = compile_into(sources, compiler, out); !ok) return ok;
-        for (const Kernel& kernel : kernels_)
-            if (kernel.stage == gpu::Stage::Raster)
-                vertices.push_back(gpu::vertex_shader(kernel.name, kernel.text,
-                                                      out.words.at({kernel.text.digest, gpu::ShaderStage::Fragment})));
-        return compile_into(vertices, compiler, out);
-    }
-
-  private:
-    struct Kernel {
-        std::string name;
-        gpu::Stage stage = gpu::Stage::Compute;
-        gpu::KernelText text;
-    };
-    static Result<> compile_into(std::span<const gpu::ShaderSource> sources, gpu::ShaderCompiler& compiler,
-                                 gpu::ShadersToBake& out) {
+        if (std::ranges::find(kernels_, gpu::Stage::Raster, &Kernel::stage) != kernels_.end())
+            sources.push_back(gpu::vertex_shader());
         const auto compiled = compiler.compile_all(sources);
         for (std::size_t i = 0; i < sources.size(); ++i) {
             if (!compiled[i]) return failure(compiled[i].error());
@@ -70,6 +56,12 @@ class Wanted {
         return {};
     }
 
+  private:
+    struct Kernel {
+        std::string name;
+        gpu::Stage stage = gpu::Stage::Compute;
+        gpu::KernelText text;
+    };
     std::set<std::pair<Digest, gpu::Stage>> known_;
     std::vector<Kernel> kernels_;
 };

@@ -6,7 +6,6 @@
 
 #include "gpu/device/context.hpp"
 #include "gpu/resource/format_use.hpp"
-#include "gpu/shader/flat_values.hpp"
 #include "plan/frame_inputs.hpp"
 
 namespace darkroom::compose {
@@ -71,7 +70,6 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
     return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
             .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
             .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
-            .is_software = context.traits.is_software && gpu::writes_flat_values(context),
             .has_robust_images = context.traits.has_robust_images,
             .sub_texel_bits = context.traits.sub_texel_bits,
             .packing_pays = !context.traits.is_software,

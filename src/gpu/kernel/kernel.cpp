@@ -19,12 +19,6 @@ VkShaderStageFlagBits stage_flag(Stage stage) {
     return stage == Stage::Compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
-/// Vertices may read the blocks for the pixels: gpu/shader/flat_values.hpp.
-VkShaderStageFlags block_stages(const KernelSpec& spec, Stage stage) {
-    const VkShaderStageFlags own = stage_flag(stage);
-    return stage == Stage::Raster && spec.is_software ? own | VK_SHADER_STAGE_VERTEX_BIT : own;
-}
-
 /// Its sampler belongs to the layout: what Vulkan is over another interface may know no other one that compares
 /// (VkPhysicalDevicePortabilitySubsetFeaturesKHR::mutableComparisonSamplers).
 bool is_compared(const KernelImage& image) { return image.sampler_type.ends_with("Shadow"); }
@@ -32,11 +26,10 @@ bool is_compared(const KernelImage& image) { return image.sampler_type.ends_with
 std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const Context& context, const KernelSpec& spec, Stage stage) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     const auto add = [&](std::uint32_t binding, VkDescriptorType type, const VkSampler* sampler = nullptr) {
-        const bool is_block = type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
         bindings.push_back({.binding = binding,
                             .descriptorType = type,
                             .descriptorCount = 1,
-                            .stageFlags = is_block ? block_stages(spec, stage) : VkShaderStageFlags{stage_flag(stage)},
+                            .stageFlags = stage_flag(stage),
                             .pImmutableSamplers = sampler});
     };
     if (!spec.frame.empty()) add(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);

@@ -14,13 +14,7 @@
 // It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
 // constants, for choices that must not cost a branch,
 //     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
-//     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
-//     bool output_is_twice                   the output's region is exactly twice the first image's
 //     bool rays_meet                         the frame's camera is perspective: all its rays come from one point
-//     bool has_quads                         pixels tell each other in 2x2 quads, whose first texels are even:
-//     vec3 from_beside(vec3), vec4 from_beside(vec4)   what the quad's pixel to the left or right has for the argument
-//     vec3 from_below(vec3), vec4 from_below(vec4)     the same of the one below or above; finite numbers only, and
-//                                                      rounded as their difference is
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // A compute pass has a body of its own instead (KernelSpec::compute): it defines
 //     void run()                             with GLSL's own invocation numbers, `shared` variables and barrier()
@@ -76,15 +70,10 @@ struct KernelImage {
     /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sample_linear(), of floats, then mixes four loads,
     /// and there are no gathers.
     VkFormat storage_format = VK_FORMAT_UNDEFINED;
-    /// A sampled image may name a storage one before it that shows the same view: its load() then goes through that
-    /// one.
-    std::string loads_by{};
     /// Or "sampler3D", "usampler2D", ... What ends with "Shadow" is compared: Context::shadow_sampler.
     std::string sampler_type = "sampler2D";
     /// The device cannot filter its format: sample_linear() mixes four loads. Of "sampler2D" only.
     bool is_filtered_by_loads = false;
-    /// Its format is one of depth, so the sampler it is bound with takes the nearest texel.
-    bool is_depth = false;
     bool is_single = false;  ///< one texel, which load() gives everywhere
 };
 
@@ -108,13 +97,10 @@ struct KernelSpec {
     std::vector<KernelBuffer> buffers{};
     std::optional<ComputeBody> compute{};  ///< its body is run(), not shade()
     bool is_whole = false;                 ///< all regions are whole images: no region arithmetic
-    bool input_is_twice = false;           ///< constants that the body may ask for, see the top of this file
-    bool output_is_twice = false;
-    bool rays_meet = false;
-    bool is_software = false;          ///< values come by vertices, pixels tell each other in quads
-    bool has_robust_images = false;    ///< robustImageAccess: with whole images, loads outside are zero
-    std::uint32_t sub_texel_bits = 4;  ///< VkPhysicalDeviceLimits::subTexelPrecisionBits; 4 is what all promise
-    bool is_additive = false;          ///< output 0 += result instead of = result
+    bool rays_meet = false;                ///< a constant that the body may ask for, see the top of this file
+    bool has_robust_images = false;        ///< robustImageAccess: with whole images, loads outside are zero
+    std::uint32_t sub_texel_bits = 4;      ///< VkPhysicalDeviceLimits::subTexelPrecisionBits; 4 is what all promise
+    bool is_additive = false;              ///< output 0 += result instead of = result
     /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.
     std::span<const BlockMember> frame;
     std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there
@@ -133,8 +119,7 @@ struct KernelSpec {
 struct KernelText {
     KernelText(const KernelSpec& spec, Stage stage);
     std::string source;
-    Digest digest{};       ///< of without_file_names()
-    std::string vertices;  ///< of a triangle that brings it values, if one may (gpu/shader/flat_values.hpp)
+    Digest digest{};  ///< of without_file_names()
 };
 
 /// The part of an image that a frame uses. Layouts are the graph's matter.

@@ -8,7 +8,6 @@
 #include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/resource/resources.hpp"
-#include "gpu/shader/flat_values.hpp"
 
 namespace darkroom::gpu {
 
@@ -60,13 +59,10 @@ class ShaderModule {
     VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
-Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context, const KernelSpec& spec, const KernelText& text,
-                                                      std::span<const std::uint32_t> fragment) {
-    const ShaderSource source = vertex_shader(spec.name, text, fragment);
-    if (source.text != full_screen_source) return context.shaders->compile(source);
+Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context) {
     const std::lock_guard lock(context.full_screen_mutex);
     if (!context.full_screen_vertex.empty()) return context.full_screen_vertex;
-    Result<std::vector<std::uint32_t>> words = context.shaders->compile(source);
+    Result<std::vector<std::uint32_t>> words = context.shaders->compile(vertex_shader());
     if (words) context.full_screen_vertex = *words;
     return words;
 }
@@ -94,10 +90,9 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
     return pipeline;
 }
 
-Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, const KernelText& text,
-                                          VkPipelineLayout layout, std::span<const std::uint32_t> fragment_words,
+Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
                                           const ShaderModule& fragment) {
-    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context, spec, text, fragment_words);
+    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context);
     if (!words) return failure(words.error());
     const Result<ShaderModule> vertex = ShaderModule::create(context, *words, "full-screen triangle");
     if (!vertex) return failure(vertex.error());
@@ -184,9 +179,7 @@ ShaderSource kernel_shader(std::string_view name, Stage stage, const KernelText&
             .digest = text.digest};
 }
 
-ShaderSource vertex_shader(std::string_view name, const KernelText& text, std::span<const std::uint32_t> fragment) {
-    if (!text.vertices.empty() && reads_flat_inputs(fragment))
-        return {.name = fmt::format("{} (vertices)", name), .text = text.vertices, .stage = ShaderStage::Vertex};
+ShaderSource vertex_shader() {
     return {.name = "full-screen triangle", .text = std::string(full_screen_source), .stage = ShaderStage::Vertex};
 }
 
@@ -198,7 +191,7 @@ Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& sp
     const Result<ShaderModule> module = ShaderModule::create(context, *words, spec.name);
     if (!module) return failure(module.error());
     Result<VkPipeline> made = is_compute ? create_compute_pipeline(context, spec, layout, *module)
-                                         : create_raster_pipeline(context, spec, text, layout, *words, *module);
+                                         : create_raster_pipeline(context, spec, layout, *module);
     if (!made) return made;
     ++context.pipelines_created;
     name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(*made), spec.name);

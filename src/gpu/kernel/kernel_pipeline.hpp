@@ -25,8 +25,7 @@ inline constexpr std::uint32_t first_image_binding = 2;
 
 /// `name`: that of the spec.
 [[nodiscard]] ShaderSource kernel_shader(std::string_view name, Stage stage, const KernelText& text);
-/// What goes with a fragment shader made of kernel_shader().
-[[nodiscard]] ShaderSource vertex_shader(std::string_view name, const KernelText& text,
-                                         std::span<const std::uint32_t> fragment);
+/// What goes with every fragment shader: the full-screen triangle.
+[[nodiscard]] ShaderSource vertex_shader();
 
 }  // namespace darkroom::gpu

@@ -9,7 +9,6 @@
 #include "core/assert.hpp"
 #include "gpu/kernel/kernel_pipeline.hpp"
 #include "gpu/resource/formats.hpp"
-#include "gpu/shader/flat_values.hpp"
 #include "gpu/shader/rewrite.hpp"
 
 namespace darkroom::gpu {
@@ -19,8 +18,13 @@ namespace {
 constexpr std::array<std::string_view, 8> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
                                                           "gather_green",  "size", "store",        "as_stored"};
 
-/// Words of the own block before its members.
-std::uint32_t first_member_word(const KernelSpec& spec) { return 4 * first_member_vector(spec); }
+/// Words of the own block before its members: two vectors of the output, three of each image, one of each output of a
+/// compute pass, custom.
+std::uint32_t first_member_word(const KernelSpec& spec) {
+    const std::size_t outputs = spec.compute ? spec.outputs.size() : 0;
+    return 4 * (2 + 3 * static_cast<std::uint32_t>(spec.images.size()) + static_cast<std::uint32_t>(outputs) +
+                spec.custom_vectors);
+}
 
 constexpr std::string_view preamble = R"(#version 460
 #extension GL_GOOGLE_cpp_style_line_directive : require
@@ -33,16 +37,6 @@ constexpr std::string_view pixel_functions = R"(ivec2 output_size() { return dar
 Pixel darkroom_pixel(ivec2 texel) {
     return Pixel(texel, fma(vec2(texel), darkroom_texel.xy, darkroom_texel.zw), darkroom_output.zw);
 }
-)";
-
-// The difference between both pixels takes a value over: there is no other way before subgroup operations of quads.
-constexpr std::string_view quad_function = R"({0} from_beside({0} value) {{
-    return value + dFdxFine(value) * float(1 - 2 * (int(gl_FragCoord.x) & 1));
-}}
-{0} from_below({0} value) {{ return value + dFdyFine(value) * float(1 - 2 * (int(gl_FragCoord.y) & 1)); }}
-)";
-constexpr std::string_view no_quad_function = R"({0} from_beside({0} value) {{ return value; }}
-{0} from_below({0} value) {{ return value; }}
 )";
 
 using Text = std::back_insert_iterator<std::string>;
@@ -68,16 +62,7 @@ bool is_plain_2d(std::string_view sampler_type) {
     return sampler_type == "sampler2D" || sampler_type == "usampler2D" || sampler_type == "isampler2D";
 }
 
-/// Regions may begin at odd texels, whole images do not.
-bool has_quads(const KernelSpec& spec, Stage stage) {
-    return stage == Stage::Raster && spec.is_software && spec.is_whole;
-}
-
-void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatValues>& values) {
-    if (values) {
-        fmt::format_to(text, "{}", flat_inputs(spec, *values));
-        return;
-    }
+void write_blocks(Text text, const KernelSpec& spec) {
     if (!spec.frame.empty()) {
         fmt::format_to(text, "layout(std140, set = 0, binding = 0) uniform DarkroomFrame {{\n{}}};\n",
                        block_source(spec.frame, 0));
@@ -129,14 +114,6 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
     if (prefix.empty()) write_filter(text, image.name);
 }
 
-/// Software drivers look at the level of each texel that they fetch, and at none of a texture with one level.
-std::string texel_of(const KernelImage& image, bool has_quads, std::string_view offset) {
-    if (!image.loads_by.empty()) return fmt::format("load_{}(texel)", image.loads_by);
-    if (has_quads && image.is_depth)
-        return fmt::format("texture({0}, (vec2(texel) + 0.5) / vec2(size_{0}()))", image.name);
-    return fmt::format("texelFetch({}, {}{}, 0)", image.name, place_of(image), offset);
-}
-
 void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& image, std::uint32_t binding,
                          Stage stage) {
     const bool is_whole = spec.is_whole;
@@ -144,7 +121,7 @@ void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& i
     if (!is_plain_2d(image.sampler_type)) return;
     const std::string_view prefix = prefix_of_sampler(image.sampler_type);
     const std::string offset = is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name);
-    const std::string load = texel_of(image, has_quads(spec, stage), offset);
+    const std::string load = fmt::format("texelFetch({}, {}{}, 0)", image.name, place_of(image), offset);
     // The sampler clamps to the edge of the whole image.
     const std::string place = is_whole
                                   ? "    return uv;\n"
@@ -239,12 +216,6 @@ void write_buffers(Text text, const KernelSpec& spec, Stage stage) {
                        binding++, buffer.is_written ? "" : "readonly ", buffer.name, buffer.type);
 }
 
-void write_quads(Text text, bool has_quads) {
-    fmt::format_to(text, "const bool has_quads = {};\n", has_quads);
-    for (const std::string_view type : {"vec3", "vec4"})
-        fmt::format_to(text, fmt::runtime(has_quads ? quad_function : no_quad_function), type);
-}
-
 /// Declares `vec4 result[N]` and fills it.
 void write_shade_call(Text text, std::size_t output_count) {
     if (output_count == 1) {
@@ -329,8 +300,7 @@ std::vector<std::string_view> image_names(const KernelSpec& spec) {
 }
 
 /// `body`: with its calls of images rewritten.
-std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<FlatValues>& values,
-                      std::string_view body) {
+std::string source_of(const KernelSpec& spec, Stage stage, std::string_view body) {
     std::string source(preamble);
     source.reserve(2 * body.size() + 4096);
     const Text text = std::back_inserter(source);
@@ -338,12 +308,9 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
         fmt::format_to(text, "layout(local_size_x = {}, local_size_y = {}) in;\n", spec.workgroup[0],
                        spec.workgroup[1]);
     }
-    fmt::format_to(text,
-                   "const bool loads_outside_are_zero = {};\nconst bool input_is_twice = {};\n"
-                   "const bool output_is_twice = {};\nconst bool rays_meet = {};\n",
-                   spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.output_is_twice, spec.rays_meet);
-    write_quads(text, has_quads(spec, stage));
-    write_blocks(text, spec, values);
+    fmt::format_to(text, "const bool loads_outside_are_zero = {};\nconst bool rays_meet = {};\n",
+                   spec.has_robust_images && spec.is_whole, spec.rays_meet);
+    write_blocks(text, spec);
     source += pixel_functions;
     std::uint32_t binding = first_image_binding;
     for (const KernelImage& image : spec.images) {
@@ -379,18 +346,9 @@ std::string without_file_names(std::string_view source) {
     return out.append(source.substr(copied));
 }
 
-KernelText::KernelText(const KernelSpec& spec, Stage stage) {
-    std::optional<WordsOfBlocks> words;
-    if (takes_flat_values(spec, stage)) words.emplace(spec);
-    const auto visit = [&](std::string_view word, const GlslScanner& after) { words->visit(word, after); };
-    const std::string body =
-        rewrite_image_calls(spec.body, image_functions, image_names(spec), words ? VisitWord(visit) : VisitWord());
-    std::optional<FlatValues> values;
-    if (words) values = flat_values(spec, *words);
-    source = source_of(spec, stage, values, body);
-    digest = sha256(without_file_names(source));
-    if (values) vertices = flat_vertex_source(spec, *values);
-}
+KernelText::KernelText(const KernelSpec& spec, Stage stage)
+    : source(source_of(spec, stage, rewrite_image_calls(spec.body, image_functions, image_names(spec)))),
+      digest(sha256(without_file_names(source))) {}
 
 std::size_t own_block_size(const KernelSpec& spec) {
     constexpr std::size_t vector_size = 16;

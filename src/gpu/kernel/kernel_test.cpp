@@ -127,46 +127,6 @@ TEST(GpuKernel, FiltersByLoadsAsTheSamplerDoes) {
     }
 }
 
-// Odd sizes: the last pixels ask such as lie outside the picture.
-TEST(GpuKernel, PixelsOfAQuadTellEachOther) {
-    KernelSpec spec = spec_of(
-        "vec4 shade(Pixel pixel) {\n"
-        "    vec2 place = vec2(pixel.texel) * 100.0;\n"
-        "    vec4 beside = from_beside(vec4(place, 3.0, 4.0));\n"
-        "    return vec4(beside.x, from_below(place.yxy).x, from_below(beside).xy) * (has_quads ? 1.0 : 0.0);\n"
-        "}",
-        VK_FORMAT_R32G32B32A32_SFLOAT);
-    for (const bool has_quads : {true, false}) {
-        spec.is_software = spec.is_whole = has_quads;
-        const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Raster));
-        Picture in = test::upload(context(), scene(8, 8), half4);
-        Picture out = test::blank(context(), {7, 5}, VK_FORMAT_R32G32B32A32_SFLOAT);
-        test::run_kernel(context(), *kernel, {.inputs = {&in}, .outputs = {&out}});
-        const Pixels result = test::download(context(), out);
-        for (std::uint32_t y = 0; y < 5; ++y)
-            for (std::uint32_t x = 0; x < 7; ++x) {
-                const float beside = has_quads ? 100.0F * static_cast<float>(x ^ 1U) : 0;
-                const float below = has_quads ? 100.0F * static_cast<float>(y ^ 1U) : 0;
-                EXPECT_EQ(result.at(x, y), (std::array{beside, below, beside, below})) << x << "," << y;
-            }
-    }
-}
-
-TEST(GpuKernel, DepthIsReadAtItsTexels) {
-    KernelSpec spec =
-        spec_of("vec4 shade(Pixel pixel) { return load(scene, pixel.texel * 2 + 1); }", VK_FORMAT_R32G32B32A32_SFLOAT);
-    spec.images.front().is_depth = spec.is_software = spec.is_whole = true;
-    const Pixels pixels = scene(1366, 34);
-    Picture in = test::upload(context(), pixels, VK_FORMAT_R32G32B32A32_SFLOAT);
-    Picture out = test::blank(context(), {683, 17}, VK_FORMAT_R32G32B32A32_SFLOAT);
-    const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Raster));
-    test::run_kernel(context(), *kernel, {.inputs = {&in}, .outputs = {&out}});
-    const Pixels result = test::download(context(), out);
-    for (std::uint32_t y = 0; y < 17; ++y)
-        for (std::uint32_t x = 0; x < 683; ++x)
-            ASSERT_EQ(result.at(x, y), pixels.at(x * 2 + 1, y * 2 + 1)) << x << "," << y;
-}
-
 TEST(GpuKernel, LoadsTheRegionsOwnTexels) {
     const Pixels pixels = scene(32, 24);
     for (const Stage stage : {Stage::Compute, Stage::Raster}) {

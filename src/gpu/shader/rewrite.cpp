@@ -48,7 +48,7 @@ Call read_call(GlslScanner scanner, std::span<const std::string_view> images) {
 }  // namespace
 
 std::string rewrite_image_calls(std::string_view body, std::span<const std::string_view> functions,
-                                std::span<const std::string_view> images, const VisitWord& visit) {
+                                std::span<const std::string_view> images) {
     std::string result;
     result.reserve(body.size() + body.size() / 4);
     WordSet names;
@@ -56,7 +56,6 @@ std::string rewrite_image_calls(std::string_view body, std::span<const std::stri
     std::size_t copied = 0;  // up to where the body is in the result
     GlslScanner scanner(body);
     for (Token token = scanner.next_word(); token.kind != End; token = scanner.next_word()) {
-        if (visit) visit(token.text, scanner);
         if (!names.contains(token.text)) continue;
         const Call call = read_call(scanner, images);
         if (call.image.empty()) continue;

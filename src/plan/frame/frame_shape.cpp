@@ -12,10 +12,6 @@ bool is_whole(const gpu::Region& region) {
            region.extent.height == region.image.height;
 }
 
-bool is_twice(VkExtent2D larger, VkExtent2D smaller) {
-    return larger.width == 2 * smaller.width && larger.height == 2 * smaller.height;
-}
-
 }  // namespace
 
 Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, const FrameValues& values,
@@ -23,10 +19,6 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
     Shape shape;
     if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
         shape.flags |= Shape::is_whole;
-    if (pass.asks_sizes && !inputs.empty()) {
-        if (is_twice(inputs[0].region.extent, output.extent)) shape.flags |= Shape::input_is_twice;
-        if (is_twice(output.extent, inputs[0].region.extent)) shape.flags |= Shape::output_is_twice;
-    }
     if (pass.asks_rays_meet && values.rays_meet()) shape.flags |= Shape::rays_meet;
     const bool is_fused = pass.as<FusedPass>() != nullptr;
     const std::span<const FusedStep> steps = pass.steps();

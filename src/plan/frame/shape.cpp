@@ -100,8 +100,6 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
     auto spec = spec_of(pass, steps, finish);
     if (!spec) return spec;
     spec->is_whole = (shape.flags & Shape::is_whole) != 0;
-    spec->input_is_twice = (shape.flags & Shape::input_is_twice) != 0;
-    spec->output_is_twice = (shape.flags & Shape::output_is_twice) != 0;
     spec->rays_meet = (shape.flags & Shape::rays_meet) != 0;
     return spec;
 }

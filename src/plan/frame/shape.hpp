@@ -22,9 +22,9 @@ struct Shape {
     std::array<std::uint64_t, most_steps / 32> steps{};
     std::uint64_t flags = 0;
     std::uint64_t choices = 0;
-    static constexpr std::uint64_t output_is_twice = 1, rays_meet = 2, input_is_twice = 4;  ///< in flags
-    static constexpr std::uint64_t is_whole = 8;    ///< in flags: all regions are whole images
-    static constexpr std::uint32_t finish_bit = 4;  ///< in flags: Conversion::word(), where a frame says how to finish
+    static constexpr std::uint64_t rays_meet = 1;   ///< in flags
+    static constexpr std::uint64_t is_whole = 2;    ///< in flags: all regions are whole images
+    static constexpr std::uint32_t finish_bit = 2;  ///< in flags: Conversion::word(), where a frame says how to finish
     friend bool operator==(const Shape&, const Shape&) = default;
 
     void set_step(std::size_t step, bool is_plain) {

@@ -199,15 +199,8 @@ void Builder::add_input(ProgramPass& pass, FusedStep& step, const KernelPassDesc
     if (input.image.index >= images_.size()) return;
     step.images.push_back(input.name);
     const PassInput from = input_of(images_[input.image.index], input.mip_level);
-    gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
-    const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
-    if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
-        image.loads_by = image.name + "_texels";
-        pass.inputs.push_back(from);
-        pass.spec.images.push_back({.name = image.loads_by, .storage_format = format, .is_single = image.is_single});
-    }
     pass.inputs.push_back(from);
-    pass.spec.images.push_back(std::move(image));
+    pass.spec.images.push_back(planner_.kernel_image(input.name + place_suffix(0), from));
 }
 
 bool Builder::finish_pass(ProgramPass& pass, FusedStep& step, std::string_view shader, const Gate& gate,
@@ -261,15 +254,13 @@ std::vector<PassImage> Builder::add_all(const KernelPassDesc& desc) {
     return made;
 }
 
-void Builder::add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded) {
+void Builder::side(std::string name, PassImage image, PassVector neutral) {
     const bool is_known = image.index < images_.size();
     PassInput input = is_known ? input_of(images_[image.index], 0) : PassInput{};
-    input.is_loaded = is_loaded;
     const bool is_always_there = is_known && !images_[image.index].first_written.is_valid();  // a table, or a picture
     if (!is_always_there) {
         const VkFormat format = is_known ? images_[image.index].format : VK_FORMAT_R32G32B32A32_SFLOAT;
         const graph::Version constant = planner_.import_neutral(format, neutral);
-        input.is_loaded = is_loaded && is_known && planner_.facts_.at(constant.index).format == format;
         if (is_known)
             input.instead = constant;
         else

@@ -50,12 +50,7 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassBuffer find_value(std::string_view name) const override;
     std::vector<PassImage> add_compute(const ComputePassDesc& desc) override;
     void value_side(std::string name, PassBuffer value) override;
-    void side(std::string name, PassImage image, PassVector neutral) override {
-        add_side(std::move(name), image, neutral, false);
-    }
-    void loaded_side(std::string name, PassImage image, PassVector neutral) override {
-        add_side(std::move(name), image, neutral, true);
-    }
+    void side(std::string name, PassImage image, PassVector neutral) override;
     void end_constants(std::uint32_t vectors, ConstantsFunction constants) override {
         end_vectors = vectors;
         end_function = constants;
@@ -77,7 +72,6 @@ class Builder final : public PassBuilder {
         bool is_shadow_map = false;
         std::int32_t shared_toggle = -1;
     };
-    void add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded);
     [[nodiscard]] graph::ImageDesc image_desc(const PassImageDesc& desc) const;
     [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
     [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;

@@ -209,7 +209,6 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         const bool is_second = !step.is_merge && step.images[i] == "second";
         if (is_second && step.info->has_second_in_place) {
             step.is_second_resampled = !has_size(sides[i].version, from.size);
-            sides[i].is_loaded = second == nullptr && !step.is_second_resampled;
         } else if (step.is_merge || is_second) {
             auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
             if (!version) return failure(std::move(version));
@@ -336,24 +335,12 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     pass.kind = FusedPass{kernel.steps, finish, resampling, kernel.is_alpha, kernel.alpha};
     if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha && kernel.alpha == FinishAlpha{})
         pass.kind = CopyPass{.resampling = resampling, .constants = kernel.constants};
-    const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
-    const bool is_filtered = is_moved_here && !loads_alone;
-    const bool is_sampled = is_filtered || is_shared || is_resampled;
+    const bool is_sampled = is_moved_here || is_shared || is_resampled;
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
-    std::size_t beside = 0;  // images that stand there twice
     for (const auto& [name, input] : kernel.images) {
-        gpu::KernelImage image = kernel_image(name, input);
-        if (is_storage_side(kernel, input)) image.storage_format = storage_format(input.version);
-        const std::size_t more = kernel.images.size() - (pass.spec.images.size() - 1 - beside);
-        if (is_loaded_beside(kernel, name) && pass.spec.images.size() + more < gpu::most_images) {
-            ++beside;
-            image.loads_by = name + "_texels";
-            pass.spec.images.push_back({.name = image.loads_by, .storage_format = storage_format(input.version)});
-            pass.inputs.push_back(input);
-        }
-        pass.spec.images.push_back(std::move(image));
+        pass.spec.images.push_back(kernel_image(name, input));
         pass.inputs.push_back(input);
     }
     for (const auto& [name, number] : kernel.values) {
@@ -405,7 +392,7 @@ Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& inf
                                                            std::uint32_t place, std::span<const std::string> images) {
     const auto key = std::tuple(&info, file, place, std::vector<std::string>(images.begin(), images.end()));
     if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
-    auto text = effect_text(info, file, place, images, traits_.is_software);
+    auto text = effect_text(info, file, place, images);
     if (!text) return failure(std::move(text));
     return texts_[key] = std::make_shared<const EffectText>(std::move(*text));
 }

@@ -133,17 +133,6 @@ gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input)
             .sampler_type = desc.extent.depth > 1 ? "sampler3D" : "sampler2D"};
 }
 
-bool Planner::is_storage_side(const OpenKernel& kernel, const PassInput& side) const {
-    const auto can_load = [&](const PassInput& input) {
-        return input.is_loaded && input.table == no_table && storage_format(input.version) != VK_FORMAT_UNDEFINED;
-    };
-    if (!traits_.is_software || !can_load(side) || may_share(kernel.picture, side.version)) return false;
-    return std::ranges::none_of(kernel.images, [&](const auto& image) {
-        const PassInput& other = image.second;
-        return other.table == no_table && !can_load(other) && may_share(other.version, side.version);
-    });
-}
-
 /// The images that may stand behind a version, by the version they began as.
 void Planner::collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const {
     const Facts& facts = facts_.at(version.index);

@@ -20,19 +20,8 @@ void Planner::limit_storage_images(ProgramPass& pass) const {
         return count + pass.spec.outputs.size() > traits_.max_storage_images;
     };
     if (!is_beyond()) return;
-    // An image that is both loaded and sampled stands there twice: the sampled one stays.
-    for (gpu::KernelImage& image : images) {
-        if (image.loads_by.empty()) continue;
-        const auto loaded = std::ranges::find(images, std::exchange(image.loads_by, {}), &gpu::KernelImage::name);
-        loaded->name.clear();
-    }
-    for (std::size_t i = images.size(); i-- > 0;) {
-        if (pass.inputs[i].table != no_table) continue;
-        images[i].storage_format = VK_FORMAT_UNDEFINED;
-        if (!images[i].name.empty()) continue;
-        images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
-        pass.inputs.erase(pass.inputs.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+    for (std::size_t i = 0; i < images.size(); ++i)
+        if (pass.inputs[i].table == no_table) images[i].storage_format = VK_FORMAT_UNDEFINED;
     // Then tables, the last first.
     for (std::size_t i = images.size(); i-- > 0 && is_beyond();) images[i].storage_format = VK_FORMAT_UNDEFINED;
 }
@@ -60,17 +49,11 @@ Result<> Planner::settle_inputs(ProgramPass& pass) {
         gpu::KernelImage& image = pass.spec.images[i];
         image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
                                      !can_filter(pass.inputs[i]);
-        image.is_depth =
-            pass.inputs[i].table == no_table && gpu::is_depth(facts_.at(pass.inputs[i].version.index).format);
     }
-    pass.spec.is_software = traits_.is_software;
     pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.sub_texel_bits = traits_.sub_texel_bits;
     lay_out_literals(pass);
-    for (const FusedStep& step : pass.steps()) {
-        pass.asks_sizes |= step.text && step.text->asks_sizes;
-        pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
-    }
+    for (const FusedStep& step : pass.steps()) pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
     return {};
 }
 
@@ -80,10 +63,8 @@ void Planner::add_reads(const ProgramPass& pass, graph::PassDesc& desc) const {
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
-        const bool is_general = !pass.spec.images[i].loads_by.empty();
-        const Use use = is_storage   ? (is_raster ? Use::StorageReadFragment : Use::StorageRead)
-                        : is_general ? (is_raster ? Use::SampledGeneralFragment : Use::SampledGeneralCompute)
-                                     : (is_raster ? Use::SampledFragment : Use::SampledCompute);
+        const Use use = is_storage ? (is_raster ? Use::StorageReadFragment : Use::StorageRead)
+                                   : (is_raster ? Use::SampledFragment : Use::SampledCompute);
         desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
     }
     for (const PassBufferUse& buffer : pass.buffers)

@@ -83,18 +83,6 @@ Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t inp
     return values_.size() - 1;
 }
 
-bool Planner::is_loaded_beside(const OpenKernel& kernel, std::string_view image) const {
-    if (!traits_.is_software || std::ranges::count(kernel.steps, image, &FusedStep::reads) == 0) return false;
-    const auto own = std::ranges::find(kernel.images, image, [](const auto& named) { return named.first; });
-    if (storage_format(own->second.version) == VK_FORMAT_UNDEFINED) return false;
-    // One image is in one layout: nothing else may read it.
-    const auto shares = [&](const auto& other) {
-        return other.first != image && other.second.table == no_table &&
-               may_share(other.second.version, own->second.version);
-    };
-    return !may_share(kernel.picture, own->second.version) && std::ranges::none_of(kernel.images, shares);
-}
-
 bool Planner::is_of_ui(std::uint32_t entry) const {
     std::uint32_t i = entry;
     std::size_t steps = 0;  // frames before may close a loop

@@ -167,10 +167,6 @@ class Planner {
     [[nodiscard]] graph::Version import_constant(TableDesc desc, graph::Size size);
     /// An input that is not the picture: sampled, but for tables that are only loaded.
     [[nodiscard]] gpu::KernelImage kernel_image(std::string name, const PassInput& input) const;
-    /// Can this side image of a kernel be read by imageLoad? One image is in one layout: all must read it so.
-    [[nodiscard]] bool is_storage_side(const OpenKernel& kernel, const PassInput& side) const;
-    /// Is this image of a reading loaded, too, where all of its steps are off? It stands twice in the kernel then.
-    [[nodiscard]] bool is_loaded_beside(const OpenKernel& kernel, std::string_view image) const;
     void collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const;
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;

@@ -35,49 +35,66 @@ void for_each_line(std::string_view text, const Visit& visit) {
     }
 }
 
+constexpr std::string_view part_mark = "#part";
+
+/// Lines of other parts are empty, so that each line keeps its number.
+std::string part_of(std::string_view text, std::string_view part) {
+    std::string out;
+    bool is_in = true;
+    for_each_line(text, [&](std::string_view line, std::size_t) {
+        const bool is_mark = line.starts_with(part_mark);
+        if (is_mark) {
+            const std::string names = fmt::format("{} ", line.substr(part_mark.size()));
+            is_in = names == " " || names.find(fmt::format(" {} ", part)) != std::string::npos;
+        } else if (is_in) {
+            out += line;
+        }
+        out += '\n';
+    });
+    return out;
+}
+
 struct Found {
     const EffectFile* file = nullptr;
     std::string shown;
     bool is_shared = false;
-    bool has_forms = false;
 };
-/// Names of a user's files have no dot, so that they have one form.
-Found find(const EffectInfo& info, std::string_view name, bool is_software) {
-    const std::string software = fmt::format("{}.software.glsl", name.substr(0, name.rfind('.')));
+Found find(const EffectInfo& info, std::string_view name) {
     for (const auto files : {info.files, shared_files()}) {
-        const EffectFile* const other = find_file(files, software);
-        const EffectFile* const file = is_software && other != nullptr ? other : find_file(files, name);
+        const EffectFile* const file = find_file(files, name);
         if (file == nullptr) continue;
         const bool is_shared = files.data() != info.files.data();
         std::string shown =
             is_shared ? fmt::format("effects/{}", file->name) : fmt::format("effects/{}/{}", info.name, file->name);
         if (!file->shown.empty()) shown = file->shown;
-        return {file, std::move(shown), is_shared, other != nullptr};
+        return {file, std::move(shown), is_shared};
     }
     return {.file = nullptr, .shown = fmt::format("effects/{}/{}", info.name, name)};
 }
 
-/// Lines that include a file of the effect's own folder, or one with two forms, replaced by it.
-std::string with_own_files(const EffectInfo& info, const Found& from, bool is_software, int depth = 0) {
+/// Lines that include a file of the effect's own folder replaced by it.
+std::string with_own_files(const EffectInfo& info, const Found& from, std::string_view part, int depth = 0) {
     std::string out;
-    for_each_line(from.file->text, [&](std::string_view line, std::size_t number) {
+    for_each_line(part_of(from.file->text, part), [&](std::string_view line, std::size_t number) {
         const std::string_view name = included_name(line);
-        const Found included = name.empty() ? Found{} : find(info, name, is_software);
-        const bool is_own = included.file != nullptr && (!included.is_shared || included.has_forms);
+        const Found included = name.empty() ? Found{} : find(info, name);
+        const bool is_own = included.file != nullptr && !included.is_shared;
         if (!is_own || depth > deepest_include)
             out.append(line).push_back('\n');
         else
             out += fmt::format("#line 1 \"{}\"\n{}\n#line {} \"{}\"\n", included.shown,
-                               with_own_files(info, included, is_software, depth + 1), number + 1, from.shown);
+                               with_own_files(info, included, part, depth + 1), number + 1, from.shown);
     });
     return out;
 }
 
 }  // namespace
 
-OwnText own_text(const EffectInfo& info, std::string_view name, bool is_software) {
-    Found found = find(info, name, is_software);
-    std::string glsl = found.file == nullptr ? std::string() : with_own_files(info, found, is_software);
+OwnText own_text(const EffectInfo& info, std::string_view name) {
+    const std::size_t mark = std::min(name.find('#'), name.size());
+    Found found = find(info, name.substr(0, mark));
+    const std::string_view part = mark == name.size() ? "end" : name.substr(mark + 1);
+    std::string glsl = found.file == nullptr ? std::string() : with_own_files(info, found, part);
     return {std::move(glsl), std::move(found.shown)};
 }
 

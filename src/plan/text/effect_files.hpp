@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Files of effects as text: which one a name means, in which form, and what it includes.
+// Files of effects as text: which one a name means, and what it includes.
 
 #include <darkroom/effect.hpp>
 #include <darkroom/result.hpp>
@@ -15,9 +15,10 @@ struct OwnText {
     std::string glsl;   ///< empty: there is no such file
     std::string shown;  ///< "effects/bloom/down.glsl"
 };
-/// `is_software`: of a file with another form for drivers on the CPU, "NAME.software.glsl" beside "NAME.glsl", that
-/// form is taken, whoever includes it.
-[[nodiscard]] OwnText own_text(const EffectInfo& info, std::string_view name, bool is_software);
+/// `name`: "bloom.glsl", or "bloom.glsl#down" for its part "down". A line `#part NAME...` begins what the parts of
+/// those names have alone, up to the next such line; one without names, what all parts have. Where no part is named it
+/// is "end", an effect's pointwise end.
+[[nodiscard]] OwnText own_text(const EffectInfo& info, std::string_view name);
 
 /// Appends a text with the shared files that it includes, and #line directives that say what is whose.
 [[nodiscard]] Result<void> append_with_includes(std::string& out, std::string_view text, const std::string& shown,

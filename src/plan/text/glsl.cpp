@@ -199,8 +199,8 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
 }  // namespace
 
 Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
-                               std::span<const std::string> images, bool is_software) {
-    const OwnText own = own_text(info, name, is_software);
+                               std::span<const std::string> images) {
+    const OwnText own = own_text(info, name);
     if (own.glsl.empty()) return user_error(fmt::format("{}: there is no such file", own.shown));
 
     EffectText out;
@@ -211,16 +211,9 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
     const std::string choice_prefix = std::string(type) + "_";
     std::string renamed;
     std::size_t copied = 0;  // up to where the file is in `renamed`
-    std::string_view function, before;
     gpu::GlslScanner scanner(own.glsl);
     for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
         if (token.kind == gpu::Token::Kind::Blank) continue;
-        const bool is_loaded =
-            before == "(" && (function == "load" || function == "load_clamped" || function == "size");
-        if (token.kind == gpu::Token::Kind::Word && token.text == "picture") out.loads_picture_alone &= is_loaded;
-        if (token.kind == gpu::Token::Kind::Directive && token.text.find("picture") != std::string_view::npos)
-            out.loads_picture_alone = false;
-        function = std::exchange(before, token.text);
         if (token.kind == gpu::Token::Kind::Member) members.insert(token.text);
         if (token.kind != gpu::Token::Kind::Word) continue;
         const bool is_own =
@@ -230,7 +223,6 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
             renamed.append(own.glsl, copied, scanner.place() - copied).append(suffix);
             copied = scanner.place();
         }
-        out.asks_sizes |= token.text == "input_is_twice" || token.text == "output_is_twice";
         out.asks_parameters |= token.text == loader;
     }
     renamed.append(own.glsl, copied);

@@ -51,14 +51,12 @@ struct Baked {
 struct EffectText {
     std::string glsl;
     std::vector<const ParamInfo*> literal_rows;  ///< that it names and a lean kernel may hold as literals
-    bool asks_sizes = false;
     bool asks_rays_meet = false;
-    bool loads_picture_alone = true;  ///< names it in load(), load_clamped() and size(), and nowhere else
-    bool asks_parameters = false;     ///< calls <effect>_parameters(); a pass that does not has none in its block
+    bool asks_parameters = false;  ///< calls <effect>_parameters(); a pass that does not has none in its block
 };
-/// `name`, `is_software`: as own_text of plan/text/effect_files.hpp takes them.
+/// `name`: as own_text of plan/text/effect_files.hpp takes it.
 [[nodiscard]] Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
-                                             std::span<const std::string> images, bool is_software);
+                                             std::span<const std::string> images);
 
 /// One step of a fused kernel; a pass of an effect has one, itself.
 struct FusedStep {
@@ -115,8 +113,8 @@ enum class Resampling : std::uint8_t {
 inline constexpr std::string_view picture_name = "picture";
 /// Do the first steps read the picture at other places than the pixel's own?
 [[nodiscard]] bool is_moved(std::span<const FusedStep> steps);
-/// `vec4 NAME(Pixel pixel)`: an image through the maps and taps that read it. `plain`: how it is read where none of them
-/// is on, as in the kernel that has none; empty: one always is.
+/// `vec4 NAME(Pixel pixel)`: an image through the maps and taps that read it. `plain`: how it is read where none of
+/// them is on, as in the kernel that has none; empty: one always is.
 [[nodiscard]] std::string reading_function(std::string_view name, std::string_view image,
                                            std::span<const FusedStep> steps, std::string_view plain);
 /// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in

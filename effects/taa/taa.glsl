@@ -1,4 +1,102 @@
 // SPDX-License-Identifier: MIT
+#part mask sharpen gather
+// From light to what is averaged, and back. `unit` is the light that is shown as half of white: the inverse of the exposure.
+#include "shared/sanitize.glsl"
+
+vec3 taa_toned(vec3 light, float unit) { return light / (unit + max(light.r, max(light.g, light.b))); }
+
+// YCoCg.
+vec3 taa_opponent(vec3 toned) {
+    float green = 0.5 * toned.g, both = 0.25 * (toned.r + toned.b);
+    return vec3(both + green, 0.5 * (toned.r - toned.b), green - both);
+}
+
+vec3 taa_colors(vec3 opponent) {
+    float both = opponent.x - opponent.z;
+    return max(vec3(both + opponent.y, opponent.x + opponent.z, both - opponent.y), vec3(0.0));
+}
+
+vec3 taa_light(vec3 toned, float unit) {
+    // As bright as half floats can be.
+    return min(toned * unit / max(1.0 - max(toned.r, max(toned.g, toned.b)), 1e-7), vec3(65504.0));
+}
+
+// Stops of the unit, in 32nds, which the history holds as codes of 16 bits.
+float taa_stops_of(float exposure) { return floor(0.5 - 32.0 * log2(clamp(exposure, 1e-6, 1e6))) / 32.0; }
+float taa_packed_stops(float stops) { return (stops * 32.0 + 1024.0) / 65535.0; }
+float taa_unpacked_stops(float packed) { return floor(packed * 65535.0 - 1023.5) / 32.0; }
+
+// The history is stored in 16 bits. Rounding to the nearest would swallow small steps, and truncation would darken the
+// picture frame by frame. So a value is rounded up as often as the part that it loses is large. Noise by J. Jimenez,
+// "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
+float taa_dither(ivec2 texel, float frame) {
+    vec2 place = vec2(texel) + 5.588238 * frame;
+    return fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));
+}
+vec3 taa_rounded(vec3 value, float dither, bool is_of_codes) {
+    vec3 part = fract(vec3(0.0, 1.0 / 3.0, 2.0 / 3.0) + dither);
+    if (is_of_codes) return floor(value * 65535.0 + part) / 65535.0;
+    // A half has 13 bits of mantissa less.
+    return uintBitsToFloat((floatBitsToUint(value) + uvec3(part * 8192.0)) & 0xffffe000u);
+}
+
+// Frames up to 128 and a deviation, as roots of their share in 8 bits each.
+vec2 taa_packed(vec2 kept, float dither) {
+    return floor(sqrt(clamp(kept / vec2(128.0, 1.0), 0.0, 1.0)) * 255.0 + vec2(dither, fract(dither + 0.5))) / 255.0;
+}
+vec2 taa_unpacked(vec2 packed) { return packed * packed * vec2(128.0, 1.0); }
+
+#part motion
+// Motion of a world that stands still, in pixels, y down, without jitter. custom[0 ... 2] = x, y (down) and w of a moment
+// ago, of a point of view space; custom[3], custom[4] = RayConstants; custom[5] = (size, motion by the jitter).
+vec4 shade(Pixel pixel) {
+    vec2 texel = vec2(pixel.texel);
+    // The sky turns with the camera and does not come nearer.
+    float planar = 1.0 / max(load(taa_distance, pixel.texel).r, 1e-9);
+    vec2 place = (texel * custom[3].xy + custom[3].zw) * planar + texel * custom[4].xy + custom[4].zw;
+    vec4 point = vec4(place, -planar, 1.0);
+    float w = dot(custom[2], point);
+    vec2 before = (vec2(dot(custom[0], point), dot(custom[1], point)) / w * 0.5 + 0.5) * custom[5].xy;
+    // What was behind the camera has no place in the last picture.
+    return vec4(w > 0.0 ? before - (texel + 0.5) + custom[5].zw : vec2(0.0), 0.0, 1.0);
+}
+
+#part mask
+// How little the past tells of a pixel of the frame, and of those around it: what the host says, and how much what is shown
+// changed as transparent things were drawn, which have neither depth nor motion. custom[0].x: for so much of a change; 0 where
+// nobody knows the colour before.
+
+float taa_mask_at(ivec2 texel, float unit) {
+    vec3 behind = taa_toned(sanitize_light(load(taa_transparency, texel).rgb), unit);
+    vec3 change = abs(taa_toned(sanitize_light(load(taa_color, texel).rgb), unit) - behind);
+    float seen = custom[0].x * max(change.r, max(change.g, change.b));
+    return clamp(max(seen, load(taa_reactive, texel).r), 0.0, 1.0);
+}
+
+vec4 shade(Pixel pixel) {
+    float unit = exp2(taa_stops_of(load(taa_exposure, ivec2(0)).r));
+    ivec2 limit = size(taa_color) - 1;
+    float own = 0.0, around = 0.0;
+    for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+            float here = taa_mask_at(clamp(pixel.texel + ivec2(i, j), ivec2(0), limit), unit);
+            if (i == 0 && j == 0) own = here;
+            around = max(around, here);
+        }
+    return vec4(own, around, 0.0, 1.0);
+}
+
+#part distance
+// Inverse planar distance, 0 of the sky: what the next frame asks for what was in front. custom[0] = (x, y, z, w) with
+// distance = (d x + y) / (d z + w), custom[1].x the sky's depth.
+vec4 shade(Pixel pixel) {
+    float depth = load(taa_depth, pixel.texel).r;
+    float inverse = (depth * custom[0].z + custom[0].w) / (depth * custom[0].x + custom[0].y);
+    // What is no number compares as not nearer than the sky.
+    return vec4(depth != custom[1].x && inverse > 0.0 ? min(inverse, 65504.0) : 0.0, 0.0, 0.0, 1.0);
+}
+
+#part gather
 // Scene-linear. A pixel of the output: what the frame has near it, and what was gathered of the surface that it shows.
 // result[0] = (what is shown, stops of the unit), result[1] = (frames that are in it, by their weight; how far samples are off
 // its luma), packed, result[2] = (light, alpha of the frame).
@@ -8,7 +106,6 @@
 // count: where there is a past, and where there is none; is what is shown kept in codes and not in halves).
 // Colours are mixed as a display will show them, c / (1 + max c) of exposed light (B. Karis, "High Quality Temporal
 // Supersampling", 2014), so that one bright sample does not outweigh all others, and in YCoCg.
-#include "taa_tone.glsl"
 
 const float taa_edge = 0.03;    // by so much of a distance a sample beside is another surface
 const float taa_nearer = 0.02;  // by so much of a distance something else was in front
@@ -166,4 +263,20 @@ void shade(Pixel pixel, out vec4 result[3]) {
     result[0] = vec4(taa_rounded(shown, dither, custom[4].w > 0.5), taa_packed_stops(stops));
     result[1] = vec4(taa_packed(vec2(frames + now.weight, noise), dither), 0.0, 1.0);
     result[2] = vec4(taa_light(shown, unit), sample_linear(taa_color, place / vec2(limit + 1)).a);
+}
+
+#part sharpen
+// Scene-linear. RCAS of what will be shown, c / (1 + max c) of exposed light, which ends at 1. custom[0].x = strength.
+#include "shared/rcas.glsl"
+
+vec3 taa_shown_at(int x, int y, float unit) { return taa_toned(load(taa_gathered, ivec2(x, y)).rgb, unit); }
+
+vec4 shade(Pixel pixel) {
+    float unit = exp2(taa_stops_of(load(taa_exposure, ivec2(0)).r));
+    ivec2 texel = pixel.texel, before = max(texel - 1, 0), behind = min(texel + 1, size(taa_gathered) - 1);
+    vec4 own = load(taa_gathered, texel);
+    vec3 n = taa_shown_at(texel.x, before.y, unit), s = taa_shown_at(texel.x, behind.y, unit);
+    vec3 w = taa_shown_at(before.x, texel.y, unit), e = taa_shown_at(behind.x, texel.y, unit);
+    vec3 sharp = rcas(taa_toned(own.rgb, unit), n, s, w, e, 1.0, custom[0].x);
+    return vec4(taa_light(sharp, unit), own.a);
 }

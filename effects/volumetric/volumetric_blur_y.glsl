@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: MIT
-#include "volumetric_blur.glsl"
-
-vec4 shade(Pixel pixel) { return volumetric_blur(pixel, ivec2(0, 1)); }
