@@ -55,7 +55,7 @@ void list(const CHeader& header) {
 
 }  // namespace
 
-Command add_api(CommandFlags program) {
+static Command add_api(CommandFlags program) {
     const CommandFlags command = program.add_command("api", "Lists what the C interface declares");
     command.examples(
         "darkroom api\n"
@@ -71,6 +71,12 @@ Command add_api(CommandFlags program) {
                 else
                     list(*header);
                 return exit_ok;
+            }};
+}
+
+CommandRow api_command() {
+    return {.names = {"api"}, .place = 200, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_api(host.program)};
             }};
 }
 

@@ -176,7 +176,7 @@ int run(Options& options) {
 
 }  // namespace
 
-Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command =
         program.add_command("bake", "Writes the kernels of looks to a file, for programs that compile none");
     command.examples(
@@ -214,6 +214,12 @@ Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> name
                      "Effects of the flat table that are off have a place, too");
     options->look.add_to(command, false, named);
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow bake_command() {
+    return {.names = {"bake"}, .place = 210, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_bake(host.program, host.named)};
+            }};
 }
 
 }  // namespace app

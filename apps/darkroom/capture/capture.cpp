@@ -251,7 +251,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_capture(CommandFlags program) {
+static Command add_capture(CommandFlags program) {
     const CommandFlags command = program.add_command(
         "capture", "Draws the frames of a scene that temporal filters get, at several sizes, and their truth");
     command.examples(
@@ -281,6 +281,12 @@ Command add_capture(CommandFlags program) {
     options->drawn.add_to(command, default_extent, 1, "The time");
     options->device.add_to(command);
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow capture_command() {
+    return {.names = {"capture"}, .place = 220, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_capture(host.program)};
+            }};
 }
 
 }  // namespace app

@@ -198,7 +198,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_compare(CommandFlags program) {
+static Command add_compare(CommandFlags program) {
     const CommandFlags command = program.add_command(
         "compare", "Compares pictures, folders or sequences: errors, PSNR and FLIP; exit code 3: they differ");
     const auto options = std::make_shared<Options>();
@@ -225,6 +225,12 @@ Command add_compare(CommandFlags program) {
     command.add_flag("--mkdir", options->makes_folders, "Makes the folders of these files where they are not there");
     command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow compare_command() {
+    return {.names = {"compare"}, .place = 40, .add = [](const CommandHost& host) {
+                return std::vector{add_compare(host.program)};
+            }};
 }
 
 }  // namespace app

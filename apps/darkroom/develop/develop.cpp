@@ -510,7 +510,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command = program.add_command("develop", "Develops HDR frames into finished pictures");
     const auto options = std::make_shared<Options>();
     command.examples(
@@ -553,6 +553,12 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
                 const Result<Job> job = job_of(*options, options->frame.eyes().front());
                 if (!job) return failure(job.error());
                 return {};
+            }};
+}
+
+CommandRow develop_command() {
+    return {.names = {"develop"}, .place = 20, .add = [](const CommandHost& host) {
+                return std::vector{add_develop(host.program, host.named)};
             }};
 }
 

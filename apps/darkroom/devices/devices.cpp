@@ -48,7 +48,7 @@ int list(bool is_json) {
 
 }  // namespace
 
-Command add_devices(CommandFlags program) {
+static Command add_devices(CommandFlags program) {
     const CommandFlags command = program.add_command("devices", "Lists the Vulkan devices, best first");
     command.examples(
         "darkroom devices\n"
@@ -57,6 +57,12 @@ Command add_devices(CommandFlags program) {
     const auto is_json = std::make_shared<bool>();
     command.add_flag("--json", *is_json, "For programs: an array, one object a device");
     return {command, [is_json] { return list(*is_json); }};
+}
+
+CommandRow devices_command() {
+    return {.names = {"devices"}, .place = 100, .add = [](const CommandHost& host) {
+                return std::vector{add_devices(host.program)};
+            }};
 }
 
 }  // namespace app

@@ -70,7 +70,7 @@ int show(const Options& options) {
 
 }  // namespace
 
-Command add_effects(CommandFlags program) {
+static Command add_effects(CommandFlags program) {
     const CommandFlags command = program.add_command("effects", "Lists the effects, or shows the page of one");
     command.examples(
         "darkroom effects\n"
@@ -85,6 +85,12 @@ Command add_effects(CommandFlags program) {
     return {command, [options] {
                 if (!options->name.empty()) return show(*options);
                 return options->is_json ? print_json(darkroom::all_effects()) : list();
+            }};
+}
+
+CommandRow effects_command() {
+    return {.names = {"effects"}, .place = 60, .add = [](const CommandHost& host) {
+                return std::vector{add_effects(host.program)};
             }};
 }
 

@@ -4,7 +4,7 @@
 
 namespace app {
 
-std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags farm = program.add_command("farm", "Makes the pictures of a sequence on many machines");
     farm.require_command();
     farm.examples(
@@ -12,6 +12,12 @@ std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::Lo
         "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2\n"
         "darkroom farm status .");
     return {add_farm_slurm(farm, named), add_farm_task(farm, named), add_farm_status(farm)};
+}
+
+CommandRow farm_command() {
+    return {.names = {"farm"}, .place = 110, .add = [](const CommandHost& host) {
+                return add_farm(host.program, host.named);
+            }};
 }
 
 }  // namespace app

@@ -18,6 +18,9 @@
 
 namespace app {
 
+CommandRow render_command();
+CommandRow develop_command();
+
 namespace fs = std::filesystem;
 using darkroom::printable;
 using darkroom::Result;
@@ -146,7 +149,8 @@ Result<FarmWork> FarmFlags::work() const {
 // For two frames, because what is right for one may be wrong for several; of more, all names would be tried.
 Result<FarmInputs> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
     const Trial trial;
-    const Command command = is_scene() ? add_render(trial.program(), named) : add_develop(trial.program(), named);
+    const CommandRow row = is_scene() ? render_command() : develop_command();
+    const Command command = row.add({.program = trial.program(), .named = named}).front();
     const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
     if (Result<> parsed = trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags); !parsed)
         return failure(std::move(parsed));

@@ -65,6 +65,9 @@ class CommandFlags {
     Flag add_flag(const std::string& names, std::string& to, const std::string& doc) const;
     /// Whole command lines, one a line.
     void examples(const std::string& lines) const;
+    /// Help names it and tells no more of it.
+    void put_in_lab() const;
+    [[nodiscard]] static bool is_in_lab(const CLI::App& command);
     /// It only holds others, one of which is asked for.
     void require_command() const;
 

@@ -49,6 +49,13 @@ void end_with_task() {
 
 }  // namespace
 
+std::vector<Command> add_commands(const CommandRow& row, const CommandHost& host) {
+    std::vector<Command> out = row.add(host);
+    if (row.is_of_lab)
+        for (const Command& command : out) command.flags.put_in_lab();
+    return out;
+}
+
 int run_program(int argc, char** argv, const AddCommands& add_commands) {
     darkroom::AtomicPath::remove_on_signals();
     survive_size_limits();

@@ -87,7 +87,15 @@ void print_groups(const CommandText& command, Predicate is_shown) {
 
 void print_children(const CommandText& command) {
     fmt::print("\nCommands:\n");
-    for (const CLI::App* const child : command.children) print_row(child->get_name(), child->get_description());
+    std::vector<std::string> lab;
+    for (const CLI::App* const child : command.children)
+        if (CommandFlags::is_in_lab(*child))
+            lab.push_back(child->get_name());
+        else
+            print_row(child->get_name(), child->get_description());
+    if (!lab.empty())
+        fmt::print("\nFor whoever embeds or changes Darkroom, by `darkroom help COMMAND`:\n  {}\n",
+                   fmt::join(lab, " "));
 }
 
 int print_help(const CommandText& command, bool has_all) {
@@ -153,7 +161,7 @@ void add_help_flags(CLI::App& program) {
     program.set_help_all_flag("--help-all", "Prints this help with the flags of all effects, and other commands");
 }
 
-Command add_help(CommandFlags program) {
+static Command add_help(CommandFlags program) {
     const CommandFlags command = program.add_command("help", "Tells of a command, or of an effect's flags");
     command.examples(
         "darkroom help\n"
@@ -185,6 +193,12 @@ std::optional<int> answer_help(const CLI::App& program, std::span<char* const> a
         return print_help(describe(*command), false);
     }
     return std::nullopt;
+}
+
+CommandRow help_command() {
+    return {.names = {"help", "completion", "man"}, .place = 130, .add = [](const CommandHost& host) {
+                return std::vector{add_help(host.program), add_completion(host.program), add_man(host.program)};
+            }};
 }
 
 }  // namespace app

@@ -6,9 +6,12 @@
 #include <optional>
 #include <span>
 
-#include "apps/darkroom/flags/flags.hpp"
+#include "apps/darkroom/commands.hpp"
 
 namespace app {
+
+[[nodiscard]] Command add_completion(CommandFlags program);
+[[nodiscard]] Command add_man(CommandFlags program);
 
 /// Adds --help and --help-all to the program, and to every command that is added afterwards.
 void add_help_flags(CLI::App& program);

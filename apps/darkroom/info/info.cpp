@@ -132,7 +132,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_info(CommandFlags program) {
+static Command add_info(CommandFlags program) {
     const CommandFlags command = program.add_command(
         "info", "Tells what is in files: pictures and frames, models, scenes, looks and colour tables");
     const auto options = std::make_shared<Options>();
@@ -151,6 +151,12 @@ Command add_info(CommandFlags program) {
     command.add_flag(no_custom_effects, options->has_no_custom_effects,
                      "Refuses a look that names the file of an effect");
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow info_command() {
+    return {.names = {"info"}, .place = 50, .add = [](const CommandHost& host) {
+                return std::vector{add_info(host.program)};
+            }};
 }
 
 }  // namespace app

@@ -245,7 +245,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_judge(CommandFlags program) {
+static Command add_judge(CommandFlags program) {
     const CommandFlags command =
         program.add_command("judge", "Says how far the pictures of a temporal filter are from the truth of a capture");
     command.examples(
@@ -266,6 +266,12 @@ Command add_judge(CommandFlags program) {
         .type_name("X,Y,WxH");
     command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow judge_command() {
+    return {.names = {"judge"}, .place = 230, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_judge(host.program)};
+            }};
 }
 
 }  // namespace app

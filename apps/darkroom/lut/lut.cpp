@@ -104,7 +104,7 @@ Command add_export(CommandFlags lut, std::span<const darkroom::LookEntry> named)
 
 }  // namespace
 
-std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags lut = program.add_command("lut", "Colour tables: tells of them, converts them, makes them");
     lut.require_command();
     lut.examples(
@@ -125,6 +125,12 @@ std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::Loo
         "darkroom lut export --exposure 2 -o bright.cube\n"
         "darkroom lut export my.toml --no-tonemap -o linear.cube");
     return {info, convert, exported};
+}
+
+CommandRow lut_command() {
+    return {.names = {"lut"}, .place = 70, .add = [](const CommandHost& host) {
+                return add_lut(host.program, host.named);
+            }};
 }
 
 }  // namespace app

@@ -180,7 +180,7 @@ Result<> make(const Options& options) {
 
 }  // namespace
 
-Command add_new(CommandFlags program) {
+static Command add_new(CommandFlags program) {
     const CommandFlags command =
         program.add_command("new", "Writes an effect, a look or a scene to begin with, with comments");
     command.examples(
@@ -195,6 +195,12 @@ Command add_new(CommandFlags program) {
     return {command, [options] {
                 const Result<> done = make(*options);
                 return done ? exit_ok : fail(done.error());
+            }};
+}
+
+CommandRow new_command() {
+    return {.names = {"new"}, .place = 120, .add = [](const CommandHost& host) {
+                return std::vector{add_new(host.program)};
             }};
 }
 

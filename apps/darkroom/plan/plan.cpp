@@ -144,7 +144,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command = program.add_command(
         "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
     command.examples(
@@ -179,6 +179,12 @@ Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> name
     options->device.add_to(command);
     options->look.add_to(command, false, named);
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow plan_command() {
+    return {.names = {"plan"}, .place = 80, .add = [](const CommandHost& host) {
+                return std::vector{add_plan(host.program, host.named)};
+            }};
 }
 
 }  // namespace app

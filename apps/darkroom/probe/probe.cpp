@@ -353,7 +353,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command =
         program.add_command("probe", "Tells what every effect of a look makes of pixels of a frame");
     const auto options = std::make_shared<Options>();
@@ -374,6 +374,12 @@ Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> nam
     options->device.add_to(command);
     options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); }};
+}
+
+CommandRow probe_command() {
+    return {.names = {"probe"}, .place = 90, .add = [](const CommandHost& host) {
+                return std::vector{add_probe(host.program, host.named)};
+            }};
 }
 
 }  // namespace app

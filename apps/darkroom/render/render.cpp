@@ -433,7 +433,7 @@ int run(const RenderFlags& flags) {
 
 }  // namespace
 
-Command add_render(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+static Command add_render(CommandFlags program, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command = program.add_command("render", "Renders a scene and post-processes it");
     command.examples(
         "darkroom render scene.toml --size 640x360 -o picture.png\n"
@@ -442,6 +442,12 @@ Command add_render(CommandFlags program, std::span<const darkroom::LookEntry> na
     const auto flags = std::make_shared<RenderFlags>();
     flags->add_to(command, named);
     return {command, [flags] { return run(*flags); }, [flags] { return Render(*flags).check(); }};
+}
+
+CommandRow render_command() {
+    return {.names = {"render"}, .place = 10, .add = [](const CommandHost& host) {
+                return std::vector{add_render(host.program, host.named)};
+            }};
 }
 
 }  // namespace app

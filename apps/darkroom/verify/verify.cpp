@@ -40,4 +40,11 @@ Command add_verify(CommandFlags program, const Verify& verify) {
     return {command, [flags, verify] { return verify(*flags); }};
 }
 
+CommandRow verify_command() {
+    return {.names = {"verify"}, .place = 240, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_verify(
+                    host.program, [become = host.become](const VerifyFlags&) { return become("darkroom_verifier"); })};
+            }};
+}
+
 }  // namespace app

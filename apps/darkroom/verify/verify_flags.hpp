@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
 
@@ -19,5 +20,9 @@ struct VerifyFlags {
     NumberFlag seed{"--seed", {.least = 0, .most = 4294967295, .is_whole = true}};
     bool is_json = false;
 };
+
+/// Verifies what the flags ask for. Returns the exit code.
+using Verify = std::function<int(const VerifyFlags&)>;
+[[nodiscard]] Command add_verify(CommandFlags program, const Verify& verify);
 
 }  // namespace app

@@ -31,4 +31,11 @@ std::vector<Command> add_view(CommandFlags program, std::span<const darkroom::Lo
         add_view(program, "edit", "Shows a scene or frames, live, with every parameter at hand", true, named, view)};
 }
 
+CommandRow view_command() {
+    return {.names = {"play", "edit"}, .place = 30, .add = [](const CommandHost& host) {
+                return add_view(host.program, host.named,
+                                [become = host.become](const ViewFlags&) { return become("darkroom_viewer"); });
+            }};
+}
+
 }  // namespace app

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/flags/device_flags.hpp"
 #include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
@@ -34,5 +35,11 @@ struct ViewFlags {
     NumberFlag frame_time{"--frame-time", {.least = 0.1, .most = 1000, .unit = "ms"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
 };
+
+/// Shows what the flags ask for. Returns the exit code.
+using View = std::function<int(const ViewFlags&)>;
+/// play and edit.
+[[nodiscard]] std::vector<Command> add_view(CommandFlags program, std::span<const darkroom::LookEntry> named,
+                                            const View& view);
 
 }  // namespace app
