@@ -9,6 +9,7 @@
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "lens_dirt/lens_dirt_reference.hpp"
+#include "shared/test_lamp.hpp"
 #include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
@@ -140,6 +141,15 @@ TEST(EffectLensDirt, GpuLeavesDarkPicturesAlone) {
 
 TEST(EffectLensDirt, GpuNanAndInfinityStayContained) {
     test::expect_contained(developed({}, test::grey_with_no_numbers()));
+}
+
+TEST(EffectLensDirt, ALampCountsAlikeWhereverItLies) {
+    const LensDirt dirt{.intensity = 1, .threshold = 0};
+    test::expect_lamps_count_alike(1, 40, [&](const ReferenceImage& picture) {
+        ReferenceImage added = reference_on(dirt, picture, 1, 1, 1);
+        for (std::size_t i = 0; i < added.pixels.size(); ++i) added.pixels[i].g -= picture.pixels[i].g;
+        return added;
+    });
 }
 
 }  // namespace

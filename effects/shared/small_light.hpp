@@ -13,6 +13,7 @@
 #include <darkroom/reference.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "shared/halve_reference.hpp"
 #include "shared/sample_reference.hpp"
@@ -38,7 +39,23 @@ inline PassImage add_bright_light(PassBuilder& builder, PassImage source, std::u
                         .constants = constants});
 }
 
-/// The mean of bilinear taps, two pixels apart, of each what exceeds the threshold: c max(b - threshold, 0) / b,
+/// A bilinear tap of two texels of a row of `from`, by what of them lies under texel `at` of a row of `to` that covers
+/// the same: where it lies, 0 .. 1, and its share of the mean. shared/area.glsl.
+struct AreaTap {
+    double place = 0, share = 0;
+};
+inline std::vector<AreaTap> area_taps_reference(std::uint32_t at, std::uint32_t from, std::uint32_t to) {
+    const double ratio = static_cast<double>(from) / to, begin = at * ratio, end = begin + ratio;
+    std::vector<AreaTap> out;
+    for (double own = std::floor(begin); own < end; own += 2) {
+        const double first = std::min(end, own + 1) - std::max(begin, own);
+        const double second = std::max(std::min(end, own + 2) - std::max(begin, own + 1), 0.0);
+        out.push_back({(own + 0.5 + second / (first + second)) / from, (first + second) / ratio});
+    }
+    return out;
+}
+
+/// The mean of what lies under a texel, of each tap what exceeds the threshold: c max(b - threshold, 0) / b,
 /// b = max(r, g, b). Not a number and negative light count as 0.
 inline ReferenceImage bright_reference(const ReferenceImage& picture, double threshold, std::uint32_t part) {
     ReferenceImage from = picture;
@@ -48,18 +65,15 @@ inline ReferenceImage bright_reference(const ReferenceImage& picture, double thr
                  std::clamp(color.b, -65504.0, 65504.0), 1};
     }
     ReferenceImage out(std::max(picture.width / part, 1u), std::max(picture.height / part, 1u), {0, 0, 0, 1});
-    const std::uint32_t across = std::max(picture.width / out.width / 2, 1u);
-    const std::uint32_t down = std::max(picture.height / out.height / 2, 1u);
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x)
-            for (std::uint32_t j = 0; j < down; ++j)
-                for (std::uint32_t i = 0; i < across; ++i) {
-                    const Rgba tap = sample_reference(from, (x + (i + 0.5) / across) / out.width,
-                                                      (y + (j + 0.5) / down) / out.height);
+            for (const AreaTap& down : area_taps_reference(y, picture.height, out.height))
+                for (const AreaTap& across : area_taps_reference(x, picture.width, out.width)) {
+                    const Rgba tap = sample_reference(from, across.place, down.place);
                     const Rgba light{std::max(tap.r, 0.0), std::max(tap.g, 0.0), std::max(tap.b, 0.0), 1};
                     const double brightness = std::max({light.r, light.g, light.b});
                     const double kept = std::max(brightness - threshold, 0.0) / std::max(brightness, 1e-6);
-                    out.at(x, y) = weighed_sum_reference(out.at(x, y), light, kept / (across * down));
+                    out.at(x, y) = weighed_sum_reference(out.at(x, y), light, kept * across.share * down.share);
                 }
     return out;
 }
@@ -112,20 +126,25 @@ inline PassImage add_light_line(PassBuilder& builder, PassImage source, const st
                         .constants = constants});
 }
 
+/// The mean of what is inside the image.
 inline ReferenceImage blur_light_reference(const ReferenceImage& image, double variance) {
     const auto weights = light_weights(variance);
     constexpr auto reach = static_cast<std::int64_t>(light_reach);
     ReferenceImage across(image.width, image.height, {0, 0, 0, 1}), out = across;
     for (const bool is_down : {false, true})
         for (std::uint32_t y = 0; y < image.height; ++y)
-            for (std::uint32_t x = 0; x < image.width; ++x)
-                for (std::int64_t i = -reach; i <= reach; ++i) {
-                    const double weight = weights[static_cast<std::size_t>(std::abs(i))];
-                    if (weight == 0) continue;
-                    Rgba& sum = (is_down ? out : across).at(x, y);
-                    sum = weighed_sum_reference(sum, is_down ? across.clamped(x, y + i) : image.clamped(x + i, y),
-                                                weight);
-                }
+            for (std::uint32_t x = 0; x < image.width; ++x) {
+                const std::int64_t own = is_down ? y : x, end = is_down ? image.height : image.width;
+                const std::int64_t first = std::max(own - reach, std::int64_t{0}),
+                                   behind = std::min(own + reach + 1, end);
+                double inside = 0;
+                for (std::int64_t i = first; i < behind; ++i)
+                    inside += weights[static_cast<std::size_t>(std::abs(i - own))];
+                Rgba& sum = (is_down ? out : across).at(x, y);
+                for (std::int64_t i = first; i < behind; ++i)
+                    sum = weighed_sum_reference(sum, is_down ? across.clamped(x, i) : image.clamped(i, y),
+                                                weights[static_cast<std::size_t>(std::abs(i - own))] / inside);
+            }
     return out;
 }
 
@@ -137,15 +156,15 @@ inline PassImage add_quarter_light(PassBuilder& builder, PassImage source, std::
                         .output = builder.create({.name = "quarter", .denominator = part})});
 }
 
-/// Of about a quarter of the sides: the mean of four bilinear taps.
+/// Of about a quarter of the sides: the mean of what lies under a texel.
 inline ReferenceImage quarter_light_reference(const ReferenceImage& image, std::uint32_t width, std::uint32_t height) {
     ReferenceImage out(std::max(width, 1u), std::max(height, 1u), {0, 0, 0, 1});
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x)
-            for (const double dy : {0.25, 0.75})
-                for (const double dx : {0.25, 0.75})
+            for (const AreaTap& down : area_taps_reference(y, image.height, out.height))
+                for (const AreaTap& across : area_taps_reference(x, image.width, out.width))
                     out.at(x, y) = weighed_sum_reference(
-                        out.at(x, y), sample_reference(image, (x + dx) / out.width, (y + dy) / out.height), 0.25);
+                        out.at(x, y), sample_reference(image, across.place, down.place), across.share * down.share);
     return out;
 }
 

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The light above the threshold custom[0].x, in the small picture: the mean of bilinear taps, two pixels apart.
+// The light above the threshold custom[0].x, in the small picture: the mean of what lies under a texel.
+#include "shared/area.glsl"
 #include "shared/sanitize.glsl"
 
 vec4 shade(Pixel pixel) {
     float threshold = custom[0].x;
-    // Whole numbers in floats: they are exact up to 2^24.
-    vec2 taps = max(floor(vec2(size(bright_source)) / vec2(2 * pixel.size)), 1.0), apart = 1.0 / (taps * vec2(pixel.size));
+    vec2 extent = vec2(size(bright_source)), ratio = extent / vec2(pixel.size);
+    vec2 begin = vec2(pixel.texel) * ratio, end = begin + ratio;
+    ivec2 taps = ivec2(area_taps(begin.x, end.x), area_taps(begin.y, end.y));
     vec3 sum = vec3(0.0);
-    for (int j = 0; j < int(taps.y); ++j)
-        for (int i = 0; i < int(taps.x); ++i) {
-            vec2 place = vec2(pixel.texel) * taps + vec2(i, j) + 0.5;
-            vec3 light = sanitize_light(sample_linear(bright_source, place * apart).rgb);
+    for (int j = 0; j < taps.y; ++j)
+        for (int i = 0; i < taps.x; ++i) {
+            AreaTap x = area_tap(begin.x, end.x, i), y = area_tap(begin.y, end.y, j);
+            vec3 light = sanitize_light(sample_linear(bright_source, vec2(x.place, y.place) / extent).rgb);
             float brightness = max(light.r, max(light.g, light.b));
-            sum += light * (max(brightness - threshold, 0.0) / max(brightness, 1e-6));
+            sum += light * (max(brightness - threshold, 0.0) / max(brightness, 1e-6) * (x.weight * y.weight));
         }
-    return vec4(sum / (taps.x * taps.y), 1.0);
+    return vec4(sum / (ratio.x * ratio.y), 1.0);
 }

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A quarter of each side: the mean of four bilinear taps, which read the 16 texels under the output's.
+// About a quarter of each side: the mean of what lies under a texel.
+#include "shared/area.glsl"
 
 vec4 shade(Pixel pixel) {
-    vec2 reach = 0.25 / vec2(pixel.size);
-    return 0.25 * (sample_linear(quarter_source, pixel.uv - reach) +
-                   sample_linear(quarter_source, pixel.uv + vec2(reach.x, -reach.y)) +
-                   sample_linear(quarter_source, pixel.uv + vec2(-reach.x, reach.y)) +
-                   sample_linear(quarter_source, pixel.uv + reach));
+    vec2 extent = vec2(size(quarter_source)), ratio = extent / vec2(pixel.size);
+    vec2 begin = vec2(pixel.texel) * ratio, end = begin + ratio;
+    ivec2 taps = ivec2(area_taps(begin.x, end.x), area_taps(begin.y, end.y));
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < taps.y; ++j)
+        for (int i = 0; i < taps.x; ++i) {
+            AreaTap x = area_tap(begin.x, end.x, i), y = area_tap(begin.y, end.y, j);
+            sum += sample_linear(quarter_source, vec2(x.place, y.place) / extent).rgb * (x.weight * y.weight);
+        }
+    return vec4(sum / (ratio.x * ratio.y), 1.0);
 }
