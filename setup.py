@@ -122,7 +122,7 @@ class BuildPackage(build_py):
     def run(self):
         to = pathlib.Path(self.build_lib) / "darkroom"
         # A folder that was built in before may hold the module of another interpreter, and files that are gone.
-        known = {file.name for file in (root / "python/darkroom").iterdir() if file.is_file()}
+        known = {file.name for file in (root / "programs/python/darkroom").iterdir() if file.is_file()}
         known |= {"__init__.pyi", "_engine" + sysconfig.get_config_var("EXT_SUFFIX")}
         shutil.rmtree(to, ignore_errors=True)
         shutil.copytree(package(), to, ignore=lambda folder, names: set(names) - known)
@@ -146,7 +146,7 @@ setup(
     setup_requires=missing_tools(),
     install_requires=["numpy"],
     packages=["darkroom"],
-    package_dir={"": "python"},
+    package_dir={"": "programs/python"},
     include_package_data=False,
     distclass=HasModule,
     cmdclass={"build_py": BuildPackage},

@@ -89,6 +89,9 @@ if(DARKROOM_SANITIZE)
 endif()
 
 set(DARKROOM_GENERATED ${PROJECT_BINARY_DIR}/generated)
+# What includes are relative to, beside include/: the houses. Not programs/, whose darkroom/ is not <darkroom/...>.
+set(DARKROOM_HOUSES engine files run scenes edit proof)
+list(TRANSFORM DARKROOM_HOUSES PREPEND ${PROJECT_SOURCE_DIR}/)
 
 # Sets `code` to the C++ files of the calling folder and of its rooms, and adds their tests to DARKROOM_TEST_SOURCES: what
 # ends with _test.cpp, test_support*.cpp, and rooms whose name begins with test_. What ends with _posix or _windows is
@@ -141,7 +144,7 @@ function(darkroom_module name)
   darkroom_sources(sources)
   add_library(darkroom_${name} STATIC ${sources})
   darkroom_compile_by_room(darkroom_${name} ${sources})
-  target_include_directories(darkroom_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src
+  target_include_directories(darkroom_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${DARKROOM_HOUSES}
     ${DARKROOM_GENERATED}/include)
   target_link_libraries(darkroom_${name} PUBLIC ${ARGN} PRIVATE darkroom_options)
 endfunction()

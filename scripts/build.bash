@@ -118,7 +118,8 @@ show_progress() {
 }
 
 # What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
-program_sources=(CMakeLists.txt CMakePresets.json packages.txt cmake include src effects apps samples scenes looks)
+program_sources=(CMakeLists.txt CMakePresets.json packages.txt cmake include engine files run scenes edit
+    proof programs effects samples looks)
 
 # Was target $2 built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
 # The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/, and models

@@ -11,7 +11,7 @@
 function usual(file) {
     if (file !~ /\.(o|gch)$/) return 200
     if (file ~ /^effects\//) return 600
-    return file ~ /^(apps|src\/scene)\// ? 6000 : 4000
+    return file ~ /^(programs|edit\/viewer|proof\/verifier|scenes\/scene)\// ? 6000 : 4000
 }
 
 part == "last" && NF >= 5 { took[$4] = $2 - $1 }

@@ -170,7 +170,8 @@ TEST(Documents, EveryFlagIsRunByATest) {
         run.insert({name, "--no-" + name.substr(2), name + "-enabled"});
         for (const ParamInfo& row : effect->parameters.rows) run.insert(flag_name(flat_key(effect->name, row.name)));
     }
-    const std::string tests = all_text({"tests", "src"}, "_test.cpp") + all_text({"tests/scripts"}, ".sh") +
+    const std::string tests = all_text({"tests", "engine", "files", "run", "scenes", "edit", "proof"}, "_test.cpp") +
+                              all_text({"tests/scripts"}, ".sh") +
                               test::content(source / "docs/recipes.md");
     std::string pages = test::content(source / "README.md");
     for (const auto& page : fs::directory_iterator(source / "docs"))

@@ -321,7 +321,7 @@ TEST_F(CliPages, TemporalLab) {
     EXPECT_TRUE(fs::exists(path("judgement/judge.json")));
 }
 TEST_F(CliPages, Bindings) {
-    fs::create_symlink(fs::path(test::source_folder) / "bindings", path("bindings"));
+    fs::create_symlink(fs::path(test::source_folder) / "programs", path("programs"));
     fs::create_directory(path("FOLDER"));
     std::size_t run = 0;
     for (const auto& [kind, text] : blocks_of_page("docs/bindings.md")) {

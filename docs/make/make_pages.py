@@ -129,39 +129,40 @@ def parameters_page(effects):
 tellers = re.compile(r"\b(\w*_error|error|refused?|fail\w*|malformed|wrong\w*|complain|warn\w*)\(")
 literal = r'"((?:[^"\\\n]|\\.)*)"'
 areas = {
-    "apps/darkroom": "The command line",
-    "apps/viewer": "Play and edit",
-    "apps/verify": "Verifying",
-    "src/verify": "Verifying: the kernels",
+    "programs/darkroom": "The command line",
+    "edit/viewer": "Play and edit",
+    "proof/verifier": "Verifying",
+    "proof/verify": "Verifying: the kernels",
     "effects": "Effects",
-    "src/looks": "Looks",
-    "src/toml": "TOML",
-    "src/edit": "Editing looks",
-    "src/panels": "The editor's panels",
-    "src/window": "Windows of the desktop",
-    "src/custom": "Custom effects",
-    "src/script": "Console and controllers",
-    "src/hud": "Documents of the interface",
-    "src/scene": "Scenes and models",
-    "src/draco": "Scenes and models: Draco",
-    "src/render": "The renderer of scenes",
-    "src/image": "Pictures and frames",
-    "src/decoders": "Decoders of pictures",
-    "src/decode": "The process that decodes",
-    "src/oiio": "Pictures by OpenImageIO",
-    "src/tables": "Colour tables",
-    "src/ocio": "OpenColorIO",
-    "src/compose": "Composer",
-    "src/plan": "Planner",
-    "src/graph": "Graph",
-    "src/develop": "Developing",
-    "src/gpu": "Vulkan",
-    "src/glsl": "The compiler of GLSL",
-    "src/c": "The C interface",
-    "src/confined": "Confined processes",
-    "src/core": "Values and files",
+    "files/looks": "Looks",
+    "files/toml": "TOML",
+    "edit/edit": "Editing looks",
+    "edit/panels": "The editor's panels",
+    "edit/window": "Windows of the desktop",
+    "engine/custom": "Custom effects",
+    "run/script": "Console and controllers",
+    "run/hud": "Documents of the interface",
+    "scenes/scene": "Scenes and models",
+    "scenes/draco": "Scenes and models: Draco",
+    "scenes/render": "The renderer of scenes",
+    "files/image": "Pictures and frames",
+    "files/decoders": "Decoders of pictures",
+    "files/decode": "The process that decodes",
+    "files/oiio": "Pictures by OpenImageIO",
+    "files/tables": "Colour tables",
+    "files/ocio": "OpenColorIO",
+    "engine/compose": "Composer",
+    "engine/plan": "Planner",
+    "engine/graph": "Graph",
+    "run/develop": "Developing",
+    "engine/gpu": "Vulkan",
+    "engine/glsl": "The compiler of GLSL",
+    "engine/c": "The C interface",
+    "files/confined": "Confined processes",
+    "engine/core": "Values and files",
 }
-left_out = ("test", "graph_check", "apps/darkroom/api", "src/svg")
+houses = ("engine", "files", "run", "scenes", "edit", "proof", "programs")
+left_out = ("test", "graph_check", "programs/darkroom/api", "run/svg")
 
 
 def argument_of(text, at):
@@ -202,7 +203,7 @@ def errors_page():
            "```text",
            "darkroom: my.toml:4:19: bloom_intensity = -1: allowed is [0, 16]",
            "```\n"]
-    files = [file for folder in ("apps", "effects", "src") for file in sorted((tree / folder).rglob("*.[ch]pp"))]
+    files = [file for folder in (*houses, "effects") for file in sorted((tree / folder).rglob("*.[ch]pp"))]
     names = [(file.relative_to(tree).as_posix(), file) for file in files]
     for folder, title in areas.items():
         section = []

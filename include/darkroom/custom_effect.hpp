@@ -54,13 +54,13 @@
 //                                 pixel, Duotone parameters). In a file without passes all code is the end's
 // Code above the first @pass and @end is everyone's. What a function may call: GLSL, `#include "shared/NAME.glsl"`
 // (effects/shared), and on images by their names sample_linear(image, uv), load(image, texel), load_clamped,
-// gather_red, gather_green and size (src/gpu/kernel/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
-// frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar distance; 1e10 is
-// sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in pixels, y down),
-// frame_ui (sRGB-encoded, premultiplied), frame_reactive (red; else 0), frame_transparency (the colour before it; else
-// 0), frame_exposure (red; else 1), and of the first light that casts shadows duotone_lit(vec3 world, float planar), 1
-// where it reaches that place, duotone_light_direction() and duotone_light_color(). Names at file scope begin with the
-// effect's name, so that two entries of it fit one kernel.
+// gather_red, gather_green and size (engine/gpu/kernel/kernel.hpp). Of the frame it may read frame_time,
+// frame_delta_time, frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar
+// distance; 1e10 is sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in
+// pixels, y down), frame_ui (sRGB-encoded, premultiplied), frame_reactive (red; else 0), frame_transparency (the colour
+// before it; else 0), frame_exposure (red; else 1), and of the first light that casts shadows duotone_lit(vec3 world,
+// float planar), 1 where it reaches that place, duotone_light_direction() and duotone_light_color(). Names at file
+// scope begin with the effect's name, so that two entries of it fit one kernel.
 
 #include <cstddef>
 #include <darkroom/effect.hpp>

@@ -5,7 +5,7 @@
 //
 // effects/<name>/<name>.glsl, where the effect has a pointwise end, defines
 //     vec4 <name>(vec4 color, Pixel pixel, <Struct> parameters)
-// and may call sample_linear, load, ... (src/gpu/kernel/kernel.hpp) on the side images it declared in `build`, and
+// and may call sample_linear, load, ... (engine/gpu/kernel/kernel.hpp) on the side images it declared in `build`, and
 // `vec4 <name>_custom(int)` for its end_constants. Every name at file scope begins with the effect's name. Alpha passes
 // unchanged unless the effect is about alpha.
 // An effect of touch Map defines `Place <name>(Place place, <Struct> parameters)` (effects/shared/place.glsl), one of
@@ -65,7 +65,7 @@ struct Needs {
 struct FlatPlace {
     std::int32_t documented = -1;
     std::int32_t scene_linear = -1;
-    bool starts_on = false;  ///< in scene_linear; what is otherwise in documented stands in src/looks/documented.hpp
+    bool starts_on = false;  ///< in scene_linear; what is otherwise in documented stands in files/looks/documented.hpp
     bool is_of_ui = false;   ///< its keys stand in the table [ui]
 };
 

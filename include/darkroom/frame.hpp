@@ -148,7 +148,7 @@ struct Watched {
 };
 
 /// What a frame may bring beside its colour: what effects name in their needs. What each is like, what stands in for
-/// one that is not given, and how it is brought to another size is in src/plan/frame_inputs.hpp.
+/// one that is not given, and how it is brought to another size is in engine/plan/frame_inputs.hpp.
 enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Shadows, Ui, Reactive, Transparency, Exposure };
 inline constexpr std::size_t frame_image_count = 8;
 

@@ -155,7 +155,7 @@ struct LookOptions {
 [[nodiscard]] Look default_look(LookOrder order = LookOrder::SceneLinear);
 /// The same for pictures that a path tracer or a camera made: without EffectInfo::is_in_traced_light.
 [[nodiscard]] Look default_look_of_traced_light();
-/// An effect's entry there: at its defaults, or in the documented order at those of src/looks/documented.hpp.
+/// An effect's entry there: at its defaults, or in the documented order at those of files/looks/documented.hpp.
 [[nodiscard]] LookEntry flat_entry(const EffectInfo& effect, LookOrder order);
 /// Of a flat look: values that are the defaults of its order become those of the new one.
 void set_order(Look& look, LookOrder order);

@@ -35,7 +35,7 @@ using ConstantsFunction = void (*)(const void* parameters, const PassContext&, s
 /// a pyramid). Runs while recording.
 using ConditionFunction = bool (*)(const void* parameters, const PassContext&, std::uint32_t argument);
 
-/// Names an image that a pass builder made or was given. A picture that was written has a new name (src/graph).
+/// Names an image that a pass builder made or was given. A picture that was written has a new name (engine/graph).
 struct PassImage {
     std::uint32_t index = ~0u;
 };
@@ -85,7 +85,7 @@ struct KernelPassDesc {
     std::uint32_t argument = 0;             ///< handed to condition
 };
 
-/// A compute pass: its shader defines `void run()`, with shared memory of its own (src/gpu/kernel/kernel.hpp).
+/// A compute pass: its shader defines `void run()`, with shared memory of its own (engine/gpu/kernel/kernel.hpp).
 struct ComputePassDesc {
     std::string name;
     std::string_view shader;

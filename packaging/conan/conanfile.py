@@ -25,7 +25,8 @@ class Darkroom(ConanFile):
         self.version = re.search(r"project\(darkroom VERSION ([0-9.]+)", text)[1]
 
     def export_sources(self):
-        for what in ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "effects/*", "looks/*", "controllers/*"):
+        for what in ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "engine/*", "files/*", "edit/*",
+                     "effects/*", "looks/*", "controllers/*"):
             copy(self, what, TREE, self.export_sources_folder)
 
     def requirements(self):

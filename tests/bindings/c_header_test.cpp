@@ -2,8 +2,8 @@
 // What `darkroom api` reads of the header is all that stands in it, and what it does not understand is an error.
 #include <regex>
 
-#include "apps/darkroom/api/c_header.hpp"
-#include "apps/darkroom/run/json.hpp"
+#include "programs/darkroom/api/c_header.hpp"
+#include "programs/darkroom/run/json.hpp"
 #include "tests/cli/cli_support.hpp"
 
 namespace darkroom {

@@ -26,7 +26,7 @@ def names_of(api):
 
 def examples_of(language):
     """The page's blocks of a language."""
-    with open(os.path.join(sys.argv[1], "..", "docs", "bindings.md"), encoding="utf-8") as opened:
+    with open(os.path.join(sys.argv[1], "..", "..", "docs", "bindings.md"), encoding="utf-8") as opened:
         return re.findall(rf"^```{language}\n(.*?)^```", opened.read(), re.M | re.S)
 
 

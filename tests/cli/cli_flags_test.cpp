@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/darkroom/flags/number_flag.hpp"
 #include "cli_support.hpp"
 #include "image/frame/frame_file.hpp"
+#include "programs/darkroom/flags/number_flag.hpp"
 
 namespace darkroom {
 namespace {

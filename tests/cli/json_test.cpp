@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The value that documents and records are made of: what is written of it, and what of a text is read.
-#include "apps/darkroom/run/json.hpp"
+#include "programs/darkroom/run/json.hpp"
 
 #include <gtest/gtest.h>
 

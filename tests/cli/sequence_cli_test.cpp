@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/darkroom/run/json.hpp"
 #include "cli_support.hpp"
 #include "image/frame/frame_file.hpp"
+#include "programs/darkroom/run/json.hpp"
 
 namespace darkroom {
 namespace {

@@ -33,7 +33,7 @@ constexpr double allowed_share = 0.003;
 class CliRenderGolden : public test::CliFixture {
   protected:
     [[nodiscard]] static std::filesystem::path golden(const std::string& name) {
-        return source + "/tests/goldens/" + name + ".png";
+        return source + "/proof/goldens/" + name + ".png";
     }
     /// Of pictures that are no more as they were, for whoever looks at what a build server kept of the build folder.
     [[nodiscard]] std::string page_of_differences(const std::string& expected, const std::string& made,
@@ -50,15 +50,15 @@ TEST_F(CliRenderGolden, ScenesAndLooksAreAsTheyWere) {
     ASSERT_EQ(std::system(make.c_str()), 0) << test::content(log);
     std::filesystem::remove(log);
     std::set<std::string> kept;
-    for (const auto& file : std::filesystem::directory_iterator(source + "/tests/goldens"))
+    for (const auto& file : std::filesystem::directory_iterator(source + "/proof/goldens"))
         kept.insert(file.path().filename().string());
     const std::vector<std::string> made = files();
     EXPECT_EQ(kept, std::set<std::string>(made.begin(), made.end()));
     const std::string page = std::string(test::binary_folder) + "/goldens.html";
     std::filesystem::remove(page);
     for (const std::string& name : made)
-        EXPECT_LE(share_of_other_pixels(source + "/tests/goldens/" + name, path(name)), allowed_share) << name;
-    if (HasFailure()) ADD_FAILURE() << page_of_differences(source + "/tests/goldens", path(""), page);
+        EXPECT_LE(share_of_other_pixels(source + "/proof/goldens/" + name, path(name)), allowed_share) << name;
+    if (HasFailure()) ADD_FAILURE() << page_of_differences(source + "/proof/goldens", path(""), page);
 }
 
 TEST_F(CliRenderGolden, WhatDiffersIsOnAPage) {

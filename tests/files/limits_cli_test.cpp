@@ -354,7 +354,7 @@ constexpr std::array rows_held_together{"numbers of the layers that `--keep-laye
 
 TEST_F(CliLimits, EveryRowHasItsTest) {
     std::string sources;
-    for (const char* const folder : {"src", "tests"})
+    for (const char* const folder : {"engine", "files", "run", "scenes", "edit", "proof", "tests"})
         for (const auto& entry :
              std::filesystem::recursive_directory_iterator(std::filesystem::path(test::source_folder) / folder))
             if (entry.path().string().ends_with("_test.cpp")) sources += test::content(entry.path());
@@ -373,7 +373,7 @@ TEST_F(CliLimits, EveryRowHasItsTest) {
         EXPECT_TRUE(is_held) << "docs/limits.md: no test is known for: " << row;
     }
     // The files that rows name are there: many were moved since.
-    const std::regex file("`((?:src|include|apps)/[\\w/]+\\.[ch]pp)`");
+    const std::regex file("`((?:include|engine|files|run|scenes|edit|proof|programs)/[\\w/]+\\.[ch]pp)`");
     for (auto at = std::sregex_iterator(page_.begin(), page_.end(), file); at != std::sregex_iterator(); ++at)
         EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(test::source_folder) / (*at)[1].str())) << (*at)[1];
 }

@@ -11,10 +11,10 @@ stored=$tree/tests/bindings/libdarkroom.abi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export PYTHONDONTWRITEBYTECODE=1
-python3 "$tree/tests/bindings/make_layouts.py" "$tree/bindings" "$program" c >"$work/layout.c"
+python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$program" c >"$work/layout.c"
 "$compiler" -I "$tree/include" "$work/layout.c" -o "$work/layout"
 "$work/layout" >"$work/layout.txt"
-python3 "$tree/tests/bindings/abi.py" "$tree/bindings" "$program" "$work/layout.txt" >"$work/now"
+python3 "$tree/tests/bindings/abi.py" "$tree/programs/bindings" "$program" "$work/layout.txt" >"$work/now"
 
 sed -nE 's/^(darkroom_[a-z0-9_]+): .*/\1/p' "$work/now" | sort >"$work/declared"
 nm --dynamic --defined-only "$library" | sed -nE 's/^[0-9a-f]+ T //p' | sort >"$work/exported"

@@ -30,7 +30,7 @@ darkroom --version
 quietly darkroom develop /usr/share/darkroom/samples/window.exr --look /usr/share/darkroom/looks/film.toml -o picture.png
 [[ -s picture.png ]] || fail "darkroom makes no picture"
 # The parts that are loaded or started on first use: other files than OpenEXR, and what draws documents.
-quietly darkroom info "$tree/tests/goldens/forge.png"
+quietly darkroom info "$tree/proof/goldens/forge.png"
 man -w darkroom >/dev/null 2>&1 || [[ -e /usr/share/man/man1/darkroom.1.gz ]] || fail "no manual page"
 quietly cmake -S "$tree/tests/package" -B hosts -G Ninja -DCMAKE_CXX_FLAGS=-O0
 quietly cmake --build hosts

@@ -55,7 +55,7 @@ eval "'${CC:-cc}' -std=c99 ${flags[*]} '$tree/tests/package/main.c' $(pkg-config
 "$work/pkg_c"
 "$prefix/bin/darkroom" --version
 # The module for other files than OpenEXR is found beside the program, wherever that was moved.
-"$prefix/bin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null
+"$prefix/bin/darkroom" info "$tree/proof/goldens/forge.png" >/dev/null
 
 # The tool alone.
 cmake --install "$build" --component tool --prefix "$work/tool" >"$work/log" || { cat "$work/log" && exit 1; }
@@ -74,16 +74,16 @@ option=$([[ $kind == sanitize ]] && echo ON || echo OFF)
 cmake -S "$tree" -B "$work/second" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler" \
     -DDARKROOM_SANITIZE="$option" -DDARKROOM_TESTS=OFF -DCMAKE_INSTALL_LIBDIR=lib64/x -DCMAKE_INSTALL_BINDIR=sbin \
     >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
-object=src/core/CMakeFiles/darkroom_core.dir/program_module.cpp.o
+object=engine/core/CMakeFiles/darkroom_core.dir/program_module.cpp.o
 cmake --build "$work/second" --target "$object" >"$work/log" || { cat "$work/log" && exit 1; }
 mkdir -p "$work/second/bin"
 link=$(ninja -C "$build" -t commands bin/darkroom | tail -n 1)
 (cd "$build" && eval "${link/ -o bin\/darkroom / -o '$work/second/bin/darkroom' '$work/second/$object' }")
 cp -r "$build/lib" "$work/second/"
-cp -r "$build/apps/darkroom/help" "$work/second/apps/darkroom/"
+cp -r "$build/programs/darkroom/help" "$work/second/programs/darkroom/"
 cmake --install "$work/second" --prefix "$work/there" >"$work/log" || { cat "$work/log" && exit 1; }
 mv "$work/there" "$work/moved again"
 rm -rf "$work/second"
-"$work/moved again/sbin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null
+"$work/moved again/sbin/darkroom" info "$tree/proof/goldens/forge.png" >/dev/null
 [[ -x $work/moved\ again/lib64/x/darkroom/darkroom_svg && ! -e $work/moved\ again/include ]] ||
     { echo "a program alone is installed otherwise" && exit 1; }

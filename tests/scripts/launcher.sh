@@ -10,8 +10,8 @@ tree="$work/a tree"
 mkdir -p "$tree" "$work/bin" "$work/elsewhere"
 cp -rL "$1/.ci" "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
 cp -L "$1/CMakePresets.json" "$work/presets"
-mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,scenes/models,looks}
-touch "$tree"/{CMakeLists.txt,CMakePresets.json} "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
+mkdir -p "$tree"/{cmake,include,engine,files,run,edit,proof,programs,effects,samples,scenes/models,looks}
+touch "$tree"/{CMakeLists.txt,CMakePresets.json} "$tree/engine/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
 
 # A build that counts itself, and a machine that has every package.
 cat >"$work/bin/cmake" <<'STUB'
@@ -86,9 +86,9 @@ rebuilds() {
     "$tree/darkroom" >"$work/out" 2>"$work/said"
     [[ $(calls) == "$before" ]] || fail "two builds after: $1"
 }
-echo "int x;" >"$tree/src/one.cpp" && rebuilds "a source changed"
+echo "int x;" >"$tree/engine/one.cpp" && rebuilds "a source changed"
 touch "$tree/effects/two.glsl" && rebuilds "a source came"
-rm "$tree/src/one.cpp" && rebuilds "a source went"
+rm "$tree/engine/one.cpp" && rebuilds "a source went"
 rm "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"$work/said"
 [[ $(calls) -gt $before ]] || fail "no build where the samples are gone"
 touch "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"$work/said"
@@ -114,7 +114,7 @@ grep -q -- '--target darkroom_program darkroom_verifier$' "$STUB_LOG" || fail "v
 mv "$tree" "$work/moved" && tree=$work/moved && rebuilds "the tree moved"
 
 # A build that fails shows the end of its log, ends with 2, and is tried again.
-echo "int y;" >"$tree/src/three.cpp"
+echo "int y;" >"$tree/engine/three.cpp"
 status=0
 STUB_FAILS=1 "$tree/darkroom" >"$work/out" 2>"$work/said" || status=$?
 [[ $status == 2 && ! -s $work/out ]] && grep -q 'it is broken' "$work/said" || fail "a failing build"
@@ -127,7 +127,7 @@ lacking() {
     shift 2
     status=0
     : >"$STUB_LOG"
-    touch "$tree/src/three.cpp"
+    touch "$tree/engine/three.cpp"
     if [[ $answer == none ]]; then
         STUB_LACKS=libfmt-dev STUB_USER=$user "$@" </dev/null >"$work/out" 2>"$work/said" || status=$?
     else
@@ -166,7 +166,7 @@ lacking 1 none "$tree/test" --yes -R Bloom && installed "./test --yes"
 too_old() {
     status=0
     : >"$STUB_LOG"
-    touch "$tree/src/three.cpp"
+    touch "$tree/engine/three.cpp"
     STUB_OLD=$1 STUB_LACKS=${3:-} "$tree/darkroom" --yes >"$work/out" 2>"$work/said" || status=$?
     [[ $status == 2 && ! -s $STUB_LOG && $(<"$work/said") == "darkroom: too old here: $2" ]] ||
         fail "too old: $1: $(<"$work/said")"
@@ -174,7 +174,7 @@ too_old() {
 too_old 'cmake 3.18.4-2' 'cmake 3.18.4-2 (3.25 is needed)'
 too_old 'g++ 4:11.2.0-1' 'g++ 4:11.2.0-1 (4:12 is needed)'
 too_old 'libfmt-dev 8.1.1+ds1-2' 'libfmt-dev 8.1.1+ds1-2 (9 is needed)' libfmt-dev
-touch "$tree/src/three.cpp"
+touch "$tree/engine/three.cpp"
 STUB_OLD='cmake 3.25.1-1' "$tree/darkroom" >"$work/out" 2>"$work/said" || fail "the oldest version that does: $(<"$work/said")"
 
 # A folder that cannot be written is named, and so is the way out. Root can write everywhere.
@@ -216,10 +216,10 @@ cat >>"$work/bin/cmake" <<'STUB'
 STUB
 chmod +x "$work/bin/ninja"
 export STUB_SAID=$work/said
-touch "$tree/src/three.cpp"
+touch "$tree/engine/three.cpp"
 STUB_STEPS='50 %' "$tree/darkroom" >"$work/out" 2>"$work/said"
 [[ $(grep -cE '^darkroom: building: 50 %, about [0-9]+ s left$' "$work/said") == 1 ]] || fail "progress without a terminal"
-touch "$tree/src/three.cpp"
+touch "$tree/engine/three.cpp"
 STUB_STEPS='50 %.*50 %' script -qefc "$(printf '%q' "$tree/darkroom")" "$work/said" </dev/null >"$work/out"
 grep -qE $'\r\033\\[Kdarkroom: building: 50 %, about [0-9]+ s left\r' "$work/said" || fail "progress on a terminal"
 

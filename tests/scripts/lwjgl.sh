@@ -27,7 +27,7 @@ classes=$work/jars/\*:$work/classes
 javac -Xlint:all -Werror -cp "$classes" -d "$work/classes" "$bindings/Darkroom.java" "$tree/examples/Lwjgl.java" \
     "$tree/tests/bindings/Layout.java"
 
-PYTHONDONTWRITEBYTECODE=1 python3 "$tree/tests/bindings/make_layouts.py" "$tree/bindings" "$program" c >"$work/layout.c"
+PYTHONDONTWRITEBYTECODE=1 python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$program" c >"$work/layout.c"
 "$compiler" -I "$tree/include" "$work/layout.c" -o "$work/layout"
 "$work/layout" | cut -d' ' -f1,2 | sort >"$work/expected"
 java -cp "$classes" Layout | sort >"$work/layout.txt"

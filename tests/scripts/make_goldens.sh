@@ -6,7 +6,7 @@
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 darkroom=${1:-./darkroom}
-folder=${2:-tests/goldens}
+folder=${2:-proof/goldens}
 render() { "$darkroom" render "$@" --device llvmpipe; }
 for scene in scenes/*.scene.toml; do
     name=$(basename "$scene" .scene.toml)

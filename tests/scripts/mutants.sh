@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# mutants.sh TREE: scripts/mutants draws the same faults by the same seed, others by another, and puts each into its copy and
-# takes it out again: of one line that differs, and of a statement that is left out, alone. Nothing is built. Ends with 77,
-# which CTest takes for skipped, where the tree is no checkout of git.
+# mutants.sh TREE: proof/mutants draws the same faults by the same seed, others by another, and puts each into its copy
+# and takes it out again: of one line that differs, and of a statement that is left out, alone. Nothing is built. Ends
+# with 77, which CTest takes for skipped, where the tree is no checkout of git.
 set -euo pipefail
 tree=$1
 git -C "$tree" rev-parse HEAD >/dev/null 2>&1 || { echo "mutants: skipped, $tree is no checkout of git" && exit 77; }
@@ -13,7 +13,7 @@ fail() {
     exit 1
 }
 
-mutants=("$tree/scripts/mutants" --count 12)
+mutants=("$tree/proof/mutants" --count 12)
 first=$("${mutants[@]}" --list --seed 5)
 [[ $(wc -l <<<"$first") == 12 ]] || fail "12 faults were asked for: $first"
 [[ $first == "$("${mutants[@]}" --list --seed 5)" ]] || fail "--seed 5 draws other faults the second time"

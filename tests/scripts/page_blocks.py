@@ -91,7 +91,8 @@ def main():
             found.add((re.sub("^effects/.*", "effects", name), kind or "shown"))
     wrong = [f"{page}: no test is named that takes its blocks of {kind}" for page, kind in sorted(found - taken)]
     wrong += [f"{page}: has no block of {kind}" for page, kind in sorted(taken - found)]
-    sources = "".join(path.read_text() for path in [*tree.glob("tests/**/*_test.cpp"), *tree.glob("src/**/*_test.cpp"),
+    folders = ("tests", "engine", "files", "run", "scenes", "edit", "proof")
+    sources = "".join(path.read_text() for path in [*(test for folder in folders for test in tree.glob(f"{folder}/**/*_test.cpp")),
                                                     tree / "tests/CMakeLists.txt", tree / "examples/CMakeLists.txt"])
     for test in sorted(tests):
         suite, _, name = test.partition(".")

@@ -38,7 +38,7 @@ venv=$work/darkroom-python
 for numpy in 'numpy<2' 'numpy>=2'; do
     "$venv/bin/pip" install -q "$numpy" || { echo "left out: $numpy is not there for $("$venv/bin/python" --version)" && continue; }
     "$venv/bin/pip" install -q --no-deps --force-reinstall "$work"/darkroom-*.whl
-    (cd "$tree/python/tests" && DARKROOM_SOURCE=$tree "$venv/bin/python" -m unittest -q test_pictures test_stacks) ||
+    (cd "$tree/programs/python/tests" && DARKROOM_SOURCE=$tree "$venv/bin/python" -m unittest -q test_pictures test_stacks) ||
         fail "the package fails beside $numpy"
 done
 echo "pip_install: all as it should be"

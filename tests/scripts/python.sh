@@ -16,5 +16,5 @@ bytes=$(stat -c %s "$wheel")
 # One symbol leaves the module: an interpreter may load another shaderc or fmt.
 symbols=$(nm -D --defined-only "$work"/installed/darkroom/_engine*.so | awk '{ print $3 }')
 [[ $symbols == PyInit__engine ]] || { echo "_engine exports $symbols" && exit 1; }
-cd "$tree/python/tests"
+cd "$tree/programs/python/tests"
 PYTHONPATH=$work/installed DARKROOM_SOURCE=$tree DARKROOM_PROGRAM=$program "$python" -m unittest

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/verify/verify_report.hpp"
 #include "image/frame/frame_file.hpp"
 #include "tests/cli/cli_support.hpp"
+#include "verifier/verify_report.hpp"
 
 namespace darkroom {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where the panels of edit lie in windows of any size, and the lines between them.
-#include "apps/viewer/panels/panel_layout.hpp"
+#include "viewer/panels/panel_layout.hpp"
 
 #include <gtest/gtest.h>
 

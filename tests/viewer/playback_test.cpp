@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which frame of a sequence is shown while it plays, is stepped through and loops.
-#include "apps/viewer/playback.hpp"
+#include "viewer/playback.hpp"
 
 #include <gtest/gtest.h>
 

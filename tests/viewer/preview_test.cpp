@@ -10,8 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "apps/viewer/scale_choice.hpp"
-#include "apps/viewer/source/reduced_frame.hpp"
+#include "viewer/scale_choice.hpp"
+#include "viewer/source/reduced_frame.hpp"
 
 namespace app {
 namespace {

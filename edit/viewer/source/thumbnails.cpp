@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "thumbnails.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "core/caught.hpp"
+#include "core/thread/parallel.hpp"
+#include "develop/developer.hpp"
+#include "edit/edits.hpp"
+#include "gpu/device/context.hpp"
+#include "programs/darkroom/run/frames.hpp"
+#include "reduced_frame.hpp"
+
+namespace app {
+
+using darkroom::EffectInfo;
+using darkroom::Look;
+using darkroom::Result;
+
+namespace {
+
+/// As wide as a line of the menu has room for, on a screen of twice the usual scale.
+constexpr std::uint32_t most_width = 160;
+constexpr std::size_t columns = 8;
+
+/// With an amount that shows what it does, where its default is to do nothing. What reads a second picture gets the
+/// scene for it: an entry that was just added names none.
+Result<Look> with_effect(const Look& look, const EffectInfo& effect) {
+    Look out = look;
+    const Result<std::string> name = darkroom::edit::add_effect(out, effect);
+    // What is there already, and once only, is shown as it is.
+    if (!name) return effect.flat.is_of_ui ? Result<Look>(out) : failure(name.error());
+    darkroom::LookEntry* const entry = find_entry(out, *name);
+    if (entry != nullptr && effect.has_second && entry->second.empty()) entry->second = "scene";
+    if (entry == nullptr || effect.is_identity == nullptr || !effect.is_identity(entry->words.data())) return out;
+    for (const darkroom::ParamInfo& row : effect.parameters.rows)
+        if (row.is_amount && row.kind == darkroom::Kind::Float)
+            entry->words[row.word] = std::bit_cast<std::uint32_t>(static_cast<float>(std::min(1.0, row.range.max / 2)));
+    return out;
+}
+
+}  // namespace
+
+/// Its spans are those of the pixels that are kept.
+struct Thumbnails::Small {
+    Small(const darkroom::Frame& frame, darkroom::FrameLayers layers, std::uint32_t divisor)
+        : file(frame_file(frame, std::move(layers))),
+          lights(take_lights(file)),
+          whole(develop_input(file, lights)),
+          reduced(whole, divisor),
+          input(reduced.input()) {
+        const darkroom::UploadLayers& kept = reduced.layers();
+        input.color = kept[0].values;
+        input.color_halves = kept[0].halves;
+        input.depth = kept[1].values;
+        input.normals = kept[2].values;
+        input.normal_halves = kept[2].halves;
+        input.velocity = kept[3].values;
+        input.velocity_halves = kept[3].halves;
+        input.reactive = kept[4].values;
+        input.transparency = kept[5].values;
+        input.ui = {};
+    }
+    darkroom::FrameFile file;
+    std::vector<darkroom::ReferenceLight> lights;
+    darkroom::DevelopInput whole;
+    ReducedFrame reduced;
+    darkroom::DevelopInput input;
+};
+
+Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, Look look, darkroom::FrameReadback read)
+    : device_(device), frame_(frame), look_(std::move(look)), frame_read_(std::move(read)) {
+    const VkExtent2D whole = frame.color.used_region().extent;
+    while (whole.width / divisor_ > most_width) divisor_ *= 2;
+    extent_ = {(whole.width + divisor_ - 1) / divisor_, (whole.height + divisor_ - 1) / divisor_};
+    // What the frame refers to goes; what a file stores of it stays.
+    frame_.lights = {};
+    frame_.camera = as_stored(frame.camera);
+}
+
+Result<std::unique_ptr<Thumbnails>> Thumbnails::create(darkroom::Device& device, const darkroom::Frame& frame,
+                                                       Look look) {
+    namespace gpu = darkroom::gpu;
+    Result<darkroom::FrameReadback> read = darkroom::FrameReadback::create(device.context(), frame);
+    if (!read) return failure(std::move(read));
+    std::unique_ptr<Thumbnails> out(new Thumbnails(device, frame, std::move(look), std::move(*read)));
+    const std::size_t count = darkroom::all_effects().size();
+    const auto rows = static_cast<std::uint32_t>((count + columns - 1) / columns);
+    const VkExtent3D extent{out->extent_.width * static_cast<std::uint32_t>(columns), out->extent_.height * rows, 1};
+    Result<gpu::Image> atlas =
+        gpu::Image::create(device.context(), {.name = "thumbnails",
+                                              .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                              .extent = extent,
+                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!atlas) return failure(std::move(atlas));
+    out->atlas_ = std::move(*atlas);
+    const VkDeviceSize bytes = VkDeviceSize{4} * out->extent_.width * out->extent_.height * count;
+    Result<gpu::Buffer> staging = gpu::Buffer::create(device.context(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                      gpu::Memory::Kind::Upload, "thumbnails");
+    if (!staging) return failure(std::move(staging));
+    out->staging_ = std::move(*staging);
+    return out;
+}
+
+Thumbnails::~Thumbnails() { stop(); }
+
+// On a thread of its own nobody else would catch what is thrown.
+Result<> Thumbnails::begin() {
+    thread_ = darkroom::start_thread([this] {
+        try {
+            make_all(stop_.get_token());
+        } catch (...) {
+            const darkroom::Failure thrown = darkroom::caught("pictures of effects");
+            const std::lock_guard lock(mutex_);
+            error_ = thrown.value().text;
+        }
+    });
+    if (thread_) return {};
+    return darkroom::machine_error("no further thread can be started: effects are offered without pictures");
+}
+
+void Thumbnails::stop() { stop_.request_stop(); }
+
+std::optional<darkroom::Error> Thumbnails::take_error() {
+    const std::lock_guard lock(mutex_);
+    if (error_.empty()) return {};
+    return darkroom::Error{darkroom::Fault::Machine, std::exchange(error_, {})};
+}
+
+float Thumbnails::aspect() const { return static_cast<float>(extent_.width) / static_cast<float>(extent_.height); }
+
+VkOffset2D Thumbnails::corner_of(std::size_t cell) const {
+    return {static_cast<std::int32_t>(cell % columns * extent_.width),
+            static_cast<std::int32_t>(cell / columns * extent_.height)};
+}
+
+const darkroom::window::Pane* Thumbnails::of(const EffectInfo& effect) {
+    const std::lock_guard lock(mutex_);
+    const auto found = cells_.find(&effect);
+    if (found != cells_.end()) return found->second.is_shown ? &found->second.pane : nullptr;
+    Cell& cell = cells_[&effect];
+    cell.number = cells_.size() - 1;
+    cell.pane.view.image = {.image = atlas_.handle,
+                            .view = atlas_.mip_views[0],
+                            .format = atlas_.info.format,
+                            .extent = {atlas_.info.extent.width, atlas_.info.extent.height},
+                            .region = {corner_of(cell.number), extent_},
+                            .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    wanted_.push_back(&effect);
+    changed_.notify_all();
+    return nullptr;
+}
+
+bool Thumbnails::has_new() const {
+    const std::lock_guard lock(mutex_);
+    return !made_.empty();
+}
+
+void Thumbnails::record(VkCommandBuffer commands) {
+    const std::lock_guard lock(mutex_);
+    if (made_.empty()) return;
+    const darkroom::gpu::Context& context = device_.context();
+    darkroom::gpu::transition(context, commands, atlas_,
+                              is_drawn_ ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
+                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    is_drawn_ = true;
+    for (; !made_.empty(); made_.pop_front()) {
+        const auto& [effect, bytes] = made_.front();
+        Cell& cell = cells_.at(effect);
+        const VkDeviceSize offset = cell.number * VkDeviceSize{4} * extent_.width * extent_.height;
+        std::memcpy(staging_.memory.mapped + offset, bytes.data(), bytes.size());
+        const VkOffset2D corner = corner_of(cell.number);
+        const VkBufferImageCopy copy{.bufferOffset = offset,
+                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                     .imageOffset = {corner.x, corner.y, 0},
+                                     .imageExtent = {extent_.width, extent_.height, 1}};
+        context.vk.CmdCopyBufferToImage(commands, staging_.handle, atlas_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                        1, &copy);
+        cell.is_shown = true;
+    }
+    darkroom::gpu::transition(context, commands, atlas_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+void Thumbnails::make_all(const std::stop_token& token) {
+    const Small small(frame_, frame_read_.layers(), divisor_);
+    // Kernels of their own are those of every look; joined ones would be made anew for each effect.
+    const darkroom::DevelopDesc desc{.fuse = false};
+    darkroom::Composer composer(device_);
+    darkroom::Developer developer(device_, desc);
+    Look shown{};
+    while (!token.stop_requested()) {
+        const EffectInfo* effect = nullptr;
+        {
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait(lock, token, [&] { return !wanted_.empty(); })) return;
+            effect = wanted_.front();
+            wanted_.pop_front();
+        }
+        const auto make = [&]() -> Result<darkroom::DevelopedPicture> {
+            Result<Look> with = with_effect(look_, *effect);
+            if (!with) return failure(std::move(with));
+            if (const auto followed = darkroom::follow(shown, *with, composer); !followed)
+                return failure(followed.error());
+            shown = std::move(*with);
+            if (const auto plan = composer.compile(darkroom::compile_desc_for(device_, small.input, desc)); !plan)
+                return failure(plan.error());
+            return developer.develop(composer, small.input);
+        };
+        Result<darkroom::DevelopedPicture> picture = make();
+        const std::lock_guard lock(mutex_);
+        if (!picture)
+            error_ = fmt::format("the picture of {}: {}", effect->name, picture.error().text);
+        else if (picture->extent.width == extent_.width && picture->extent.height == extent_.height)
+            made_.emplace_back(effect, std::move(picture->bytes));
+    }
+}
+
+}  // namespace app

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include "viewer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "core/text/param_text.hpp"
+#include "gpu/device/context.hpp"
+#include "programs/darkroom/flags/device_flags.hpp"
+#include "programs/darkroom/flags/look_flags.hpp"
+#include "programs/darkroom/run/report.hpp"
+#include "viewer_state.hpp"
+
+namespace app {
+
+namespace render = darkroom::render;
+using darkroom::Result;
+using darkroom::window::PresentFrame;
+
+namespace {
+
+/// A longer frame was none: the machine slept, or a driver compiled.
+constexpr double longest_frame = 0.25;
+/// Of a scene to those of its picture. A third is what upscalers are made for, and a step between gains a third.
+constexpr std::array steps_of_lines{1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 1.0 / 3};
+
+bool is_device_lost(const darkroom::Error& error) {
+    return error.text.ends_with(darkroom::gpu::result_name(VK_ERROR_DEVICE_LOST));
+}
+
+}  // namespace
+
+Viewer::~Viewer() {
+    if (presenter_) (void)presenter_->wait();
+}
+
+int Viewer::exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
+
+Result<> Viewer::run() {
+    if (Result<> done = open(); !done) return done;
+    while (!is_leaving_) {
+        Result<> done = turn();
+        if (!done && is_device_lost(done.error())) done = make_anew(done.error());
+        if (!done) return done;
+        if (window_->is_closing()) leave();
+        if (is_fixed() && shown_frames_ >= *job_.frames_to_show) break;
+    }
+    if (Result<> done = presenter_->wait(); !done) return done;
+    write_config();
+    if (journal_) journal_->end();
+    finish_stores(true);
+    return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
+}
+
+Result<> Viewer::open() {
+    Result<darkroom::window::Window> window = darkroom::window::Window::create(job_.window);
+    if (!window) return failure(std::move(window));
+    window_.emplace(std::move(*window));
+    if (Result<> done = open_device(); !done) return done;
+    document_.emplace(std::move(*job_.document));
+    screen_ = Screen(job_.is_edit ? &*document_ : nullptr);
+    is_post_on_ = !job_.is_off;
+    is_paused_ = job_.is_paused;
+    draw_ = job_.scene_desc.render.draw;
+    if (job_.frame_time) lines_.emplace(std::vector(steps_of_lines.begin(), steps_of_lines.end()), *job_.frame_time);
+    time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
+    previous_time_ = std::max(0.0, time_ - job_.step);
+    camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
+    tell_warnings();
+    screen_.messages().set_folder(document_->options().folder);
+    if (Result<> done = open_views(); !done) return done;
+    if (EditPanels* const panels = screen_.editor()) {
+        panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(effect); });
+        panels->look().set_numbers([this](std::string_view name) {
+            const auto& view = views_[static_cast<std::size_t>(Side::Look)];
+            return view ? view->composer().value(name).numbers : std::span<const float>();
+        });
+    }
+    if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("click to look around with the mouse, Esc frees it");
+    return {};
+}
+
+bool Viewer::is_high_range() const { return presenter_ && !presenter_->color().is_standard_code(); }
+
+Result<> Viewer::start_interface() {
+    darkroom::Look look = document_->look();
+    if (look.ui) interface_files_ = {look.ui->document, look.ui->controllers};
+    resolve_ui(look, document_->file().parent_path());
+    if (Result<> done =
+            interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer());
+        !done)
+        return done;
+    return read_config();
+}
+
+darkroom::Look Viewer::look_of(Side side) const {
+    if (side == Side::Off) return darkroom::switched_off(document_->look());
+    if (side == Side::Other) return other_look_;
+    return side == Side::Look ? document_->look() : document_->saved_look();
+}
+
+Result<LookView*> Viewer::view(Side side) {
+    std::unique_ptr<LookView>& view = views_[static_cast<std::size_t>(side)];
+    if (view) return view.get();
+    auto made = std::make_unique<LookView>(*device_, LookView::Desc{.frames_in_flight = frames_in_flight,
+                                                                    .kernels = job_.kernels,
+                                                                    .fuse = job_.fuse,
+                                                                    .makes_light = is_high_range(),
+                                                                    .enlarges = lines_.has_value(),
+                                                                    .keeps = job_.timeline.entries()});
+    if (Result<> done = made->show(look_of(side)); !done) return failure(std::move(done));
+    view = std::move(made);
+    return view.get();
+}
+
+VkExtent2D Viewer::picture_extent() const {
+    if (source_ && source_->extent()) return *source_->extent();
+    const VkExtent2D window = window_->extent();
+    const VkRect2D area = screen_.picture_area(window, window_->scale(), source_ && source_->frames() > 0);
+    return {std::max(area.extent.width, 1U), std::max(area.extent.height, 1U)};
+}
+
+Result<> Viewer::turn() {
+    rest();
+    recall_panels();
+    obey_keys();
+    obey_input();
+    finish_stores(false);
+    finish_seeing();
+    reload();
+    follow_document();
+    write_journal();
+    is_resting_ = !is_due();
+    has_rested_ = has_rested_ || is_resting_;
+    if (is_resting_) return {};
+    const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
+    if (!frame) return failure(frame.error());
+    if (!*frame) {
+        is_resting_ = has_rested_ = true;
+        return {};
+    }
+    const Result<> shown = show(**frame);
+    // What was begun is ended: nothing else gives the window's image back.
+    if (Result<> done = presenter_->end(); !done) return done;
+    return shown;
+}
+
+void Viewer::move_time(double passed) {
+    previous_time_ = time_;
+    delta_time_ = is_fixed() ? job_.step : std::min(passed, longest_frame);
+    if (is_paused_) return;
+    if (shown_frames_ > 0) ++frame_index_;
+    // Of the frames that are counted the first is at the time that was asked for.
+    if (is_fixed() && shown_frames_ == 0) {
+        previous_time_ = std::max(0.0, time_ - job_.step);
+        return;
+    }
+    time_ += delta_time_;
+    if (!playback_.advance(delta_time_)) is_paused_ = true;
+}
+
+LiveMoment Viewer::moment() const {
+    LiveMoment out{
+        .time = time_,
+        .previous_time = previous_time_,
+        .draw = draw_,
+        .jitter = jitter(),
+        .aspect = static_cast<float>(full_extent_.width) / static_cast<float>(std::max(full_extent_.height, 1U)),
+        .divisor = divisor_};
+    if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
+    out.previous_orbit = last_orbit_;
+    out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
+    out.draw.exposure = darkroom::exposure_of(document_->look());
+    out.draw.mip_bias = darkroom::Composer::mip_bias(static_cast<float>(1 / scale_));
+    out.number = playback_.number();
+    return out;
+}
+
+Result<> Viewer::show(const PresentFrame& frame) {
+    frame_number_ = frame.number;
+    const Clock::time_point now = Clock::now();
+    passed_ = std::chrono::duration<double>(now - std::exchange(last_turn_, now)).count();
+    move_time(passed_);
+    name_window();
+    const VkExtent2D wanted = picture_extent();
+    if (scene_ != nullptr && shown_frames_ > 0) {
+        if (job_.turns && !is_paused_) camera_->turn(static_cast<float>(20 * delta_time_), scene_->snapshot());
+        camera_->move(*window_,
+                      {.delta_time = delta_time_,
+                       .picture = wanted,
+                       .has_keys = !gui_->wants_keys(),
+                       .has_mouse = !gui_->wants_mouse() && !screen_.picture().is_busy(),
+                       .ground = ground_ ? &*ground_ : nullptr},
+                      scene_->snapshot());
+    }
+    // The first frame, too, has what the game says and controllers set.
+    const bool is_menu_open = screen_.has_console() || gui_->has_popup();
+    settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
+    if (Result<> done = begin_timing(frame); !done) return done;
+    choose_scale();
+    has_rested_ = has_developed_ = false;
+    if (Result<> done = prepare(frame, wanted); !done) return done;
+    for (std::size_t side = 0; side < side_count; ++side)
+        if (views_[side]) settle(fmt::format("plan {}", side), views_[side]->planned());
+    tell_source_warnings();
+    store_picture(frame);
+    show_thumbnails(frame);
+    if (Result<> done = gui_->begin(window_->scale()); !done) return done;
+    if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
+    draw_screen(frame);
+    if (Result<> done = gui_->draw(frame); !done) return done;
+    end_timing(frame);
+    store_window(frame);
+    // Who waits for the window may press keys now.
+    if (++shown_frames_ == 1) {
+        tell("ready");
+        offer_unsaved();
+    }
+    return read_scopes(frame);
+}
+
+void Viewer::draw_screen(const PresentFrame& frame) {
+    LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
+    using darkroom::window::PaneView;
+    const auto shown = [&](Side side) {
+        if (side == Side::Other && other_picture_) return other_picture_->pane();
+        const LookView* const view = views_[static_cast<std::size_t>(side)].get();
+        return view != nullptr ? PaneView{.image = view->picture(), .transfer = view->transfer()} : PaneView{};
+    };
+    const PaneView left = shown(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left());
+    const PaneView right = screen_.is_comparing() ? shown(screen_.right()) : PaneView{};
+    const std::size_t number = moment().number;
+    screen_.draw({.source = *source_,
+                  .view = look,
+                  .picture = left.image,
+                  .compared = right.image,
+                  .watched = look.watched(),
+                  .transfer = left.transfer,
+                  .compared_transfer = right.transfer,
+                  .extent = full_extent_,
+                  .divisor = divisor_,
+                  .lines = scale_,
+                  .window = frame.extent,
+                  .scale = window_->scale(),
+                  .passed = is_fixed() ? delta_time_ : passed_,
+                  .is_counted = is_fixed(),
+                  .number = number,
+                  .playback = playback_,
+                  .is_paused = is_paused_,
+                  .inspection = inspection_ ? &*inspection_ : nullptr,
+                  .camera = camera_word(),
+                  .frames_a_second = frames_a_second(),
+                  .console = interface_->console()});
+    list_places();
+    for (const std::string& command : screen_.take_commands()) run_command(command);
+    if (const auto place = screen_.messages().take_chosen()) open_place(*place);
+    EditPanels* const panels = screen_.panels();
+    if (panels == nullptr) return;
+    remember_panels();
+    if (const auto file = panels->take_other()) take_other(*file);
+    if (const auto event = panels->look().take_fired()) fire(*event);
+    if (panels->take_fullscreen()) obey(KeyAction::Fullscreen, 0);
+    if (panels->take_key_sheet()) obey(KeyAction::KeySheet, 0);
+    if (const auto file = panels->take_opened()) open_subject(*file);
+    if (panels->take_pause()) toggle_pause();
+}
+
+int run_viewer(ViewerJob job) {
+    Viewer viewer(std::move(job));
+    const Result<> done = viewer.run();
+    return viewer.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+}  // namespace app

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <functional>
+#include <utility>
+
+#include "core/srgb.hpp"
+#include "core/text/param_text.hpp"
+#include "edit/edits.hpp"
+#include "gpu/device/context.hpp"
+#include "image/picture/write.hpp"
+#include "programs/darkroom/run/frames.hpp"
+#include "programs/darkroom/run/report.hpp"
+#include "viewer_state.hpp"
+
+namespace app {
+
+using darkroom::Result;
+using darkroom::window::PresentFrame;
+
+namespace {
+
+constexpr std::chrono::milliseconds between_looks{200};
+constexpr const char* panels_file = "panels.toml";
+
+std::string shown(const std::filesystem::path& path) { return darkroom::printable(path.string()); }
+
+}  // namespace
+
+void Viewer::reload() {
+    const Clock::time_point now = Clock::now();
+    if (now - last_look_at_files_ < between_looks) return;
+    last_look_at_files_ = now;
+    interface_->reload_changed();
+    const Result<bool> is_new = document_->reload_if_changed();
+    if (!is_new) screen_.tell_error("reload", is_new.error().text);
+    if (!document_->is_broken()) screen_.clear_error("reload");
+    tell_warnings();
+    if (is_new && *is_new)
+        for (const std::filesystem::path& file : document_->changed_files())
+            tell(fmt::format("read {} again", darkroom::printable(file.filename().string())));
+    reload_source();
+}
+
+void Viewer::tell_warnings() {
+    std::vector<darkroom::panels::Messages::Said> all;
+    for (const std::string& warning : document_->warnings()) all.push_back({darkroom::Severity::Warning, warning});
+    screen_.say("look's file", all);
+}
+
+// Of a source that was read again they are others.
+void Viewer::tell_source_warnings() {
+    const std::vector<std::string> more = source_->take_warnings();
+    if (more.empty()) return;
+    // A scene passes over what it does not know; a frame that is not shown is missing.
+    const darkroom::Severity severity = scene_ != nullptr ? darkroom::Severity::Warning : darkroom::Severity::Error;
+    for (const std::string& warning : more) source_warnings_.push_back({severity, warning});
+    screen_.say("source", source_warnings_);
+}
+
+// The same command gives the same picture, whatever somebody has set; and what is edited is the look's own.
+bool Viewer::has_config() const { return !job_.is_edit && !is_fixed() && !config_file().empty(); }
+
+std::filesystem::path Viewer::config_folder() {
+    const auto variable = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return std::filesystem::path(value != nullptr ? value : "");
+    };
+    const std::filesystem::path own = variable("XDG_CONFIG_HOME"), home = variable("HOME");
+    if (own.is_absolute()) return own / "darkroom";
+    return home.is_absolute() ? home / ".config" / "darkroom" : std::filesystem::path();
+}
+
+std::filesystem::path Viewer::config_file() {
+    const std::filesystem::path folder = config_folder();
+    return folder.empty() ? folder : folder / "console.cfg";
+}
+
+bool Viewer::keeps_panels() const { return job_.is_edit && !is_fixed() && !config_folder().empty(); }
+
+// At every size by themselves, so that a small window does not undo what was made in a large one.
+void Viewer::recall_panels() {
+    EditPanels* const panels = screen_.editor();
+    const VkExtent2D window = window_->extent();
+    if (panels == nullptr || window.width == 0) return;
+    panels->set_over(window_->is_fullscreen());
+    if (!keeps_panels() || (window.width == panels_of_.width && window.height == panels_of_.height)) return;
+    if (!known_panels_) {
+        Result<KnownPanels> known = KnownPanels::read(config_folder() / panels_file);
+        settle("panels", known ? Result<>() : failure(known.error()));
+        known_panels_ = known ? std::move(*known) : KnownPanels();
+    }
+    panels_of_ = window;
+    panels->set_sizes(known_panels_->of(window));
+}
+
+void Viewer::remember_panels() {
+    const EditPanels* const panels = screen_.editor();
+    if (!known_panels_ || panels == nullptr || panels->is_sizing()) return;
+    if (panels->sizes() == known_panels_->of(panels_of_)) return;
+    known_panels_->set(panels_of_, panels->sizes());
+    std::error_code error;
+    std::filesystem::create_directories(config_folder(), error);
+    settle("panels", known_panels_->write(config_folder() / panels_file));
+}
+
+Result<> Viewer::read_config() {
+    darkroom::Console& console = *interface_->console();
+    console.take_defaults();
+    if (!has_config()) return {};
+    settle("configuration", console.read_config(config_file()));
+    return document_->edit("the configuration",
+                           [&](darkroom::Look& look) { return darkroom::edit::take_values(look, console.composer()); });
+}
+
+// Whoever takes them sees what they change, and can undo it.
+void Viewer::offer_unsaved() {
+    if (!job_.is_edit || is_fixed()) return;
+    journal_.emplace(config_folder());
+    const std::optional<std::string> text = journal_->left_behind(*document_);
+    if (!text) return;
+    const std::string name = document_->file().empty() ? "a look without a name" : shown(document_->file().filename());
+    const auto take = [this, text = *text] {
+        journal_->begin(*document_);
+        settle("unsaved edits", document_->take_unsaved(text));
+    };
+    screen_.editor()->look().ask(
+        fmt::format("The window closed before the edits of {} were saved. They are still there.", name),
+        {{"Take them", take}, {"Throw them away", [this] { journal_->begin(*document_); }}});
+    tell(fmt::format("unsaved edits of {} are there", name));
+}
+
+void Viewer::write_journal() {
+    if (journal_) settle("journal", journal_->follow(*document_));
+}
+
+void Viewer::write_config() {
+    if (!has_config()) return;
+    std::error_code error;
+    std::filesystem::create_directories(config_file().parent_path(), error);
+    if (const Result<> done = interface_->console()->write_config(config_file()); !done) warn(done.error().text);
+}
+
+void Viewer::follow_document() {
+    if (document_->file() != saved_as_) {
+        if (shown_frames_ > 0) tell(fmt::format("saved {}", shown(document_->file().filename())));
+        saved_as_ = document_->file();
+        screen_.messages().set_folder(document_->options().folder);
+    }
+    if (followed_ == document_->version()) return;
+    followed_ = document_->version();
+    for (const Side side : {Side::Look, Side::Saved}) {
+        const auto& view = views_[static_cast<std::size_t>(side)];
+        if (view) settle(fmt::format("look {}", static_cast<int>(side)), view->show(look_of(side)));
+    }
+    const darkroom::LookUi ui = document_->look().ui.value_or(darkroom::LookUi{});
+    if (ui.document != interface_files_.first || ui.controllers != interface_files_.second)
+        settle("interface", start_interface());
+    interface_->set_game(ui.game);
+}
+
+std::filesystem::path Viewer::free_name(const std::string& stem, const std::string& extension) {
+    for (int number = 1; number < 10000; ++number) {
+        std::filesystem::path path = fmt::format("{}-{:04}{}", stem, number, extension);
+        // The name is taken at once, so that no other picture gets it while this one is on its way.
+        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno == EEXIST) continue;
+        if (file >= 0) ::close(file);
+        return path;
+    }
+    return stem + extension;
+}
+
+// Copies are recorded behind what made the picture, and written to files once the frame has finished.
+void Viewer::store_picture(const PresentFrame& frame) {
+    if (is_fixed() && shown_frames_ + 1 == *job_.frames_to_show) {
+        if (!job_.screenshot.empty()) wanted_.pictures = {job_.screenshot};
+        wanted_.window = job_.window_screenshot;
+    }
+    darkroom::gpu::Context& context = device_->context();
+    const LookView& view = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
+    // Where there is none yet, the next frame is stored; and a picture that is kept is the finished one: a plan for a
+    // larger one, or for the look before the last edit, has other bits.
+    const bool is_coming = !is_fixed() && !source_->display_picture() && view.is_coming();
+    while (!wanted_.pictures.empty() && view.picture().is_given() && !is_coming) {
+        std::filesystem::path path = std::move(wanted_.pictures.back());
+        wanted_.pictures.pop_back();
+        Result<darkroom::Readback> read = darkroom::Readback::create(context, view.picture());
+        if (!read) return screen_.tell_error("store", read.error().text);
+        read->record(frame.commands);
+        stores_.push_back({.frame = frame.number,
+                           .path = std::move(path),
+                           .picture = std::move(*read),
+                           .transfer = view.transfer(),
+                           .has_floats = is_high_range()});
+    }
+    if (!wanted_.frame.empty()) {
+        const darkroom::Frame of = source_->frame();
+        Result<darkroom::FrameReadback> read = darkroom::FrameReadback::create(context, of);
+        if (!read) return screen_.tell_error("store", read.error().text);
+        read->record(frame.commands);
+        Store& store = stores_.emplace_back(
+            Store{.frame = frame.number, .path = std::move(wanted_.frame), .layers = std::move(*read), .of = of});
+        store.of.camera = as_stored(of.camera);
+        store.of.time = scene_ != nullptr ? time_ : of.time;
+        store.of.delta_time = scene_ != nullptr ? delta_time_ : of.delta_time;
+        store.of.frame_index = scene_ != nullptr ? frame_index_ : of.frame_index;
+    }
+    wanted_.frame.clear();
+}
+
+// With all that lies over the picture, so behind that.
+void Viewer::store_window(const PresentFrame& frame) {
+    if (wanted_.window.empty()) return;
+    const std::filesystem::path path = std::exchange(wanted_.window, {});
+    if (is_high_range())
+        return screen_.tell_error(
+            "store", "a window of high range cannot be stored as a picture; --range standard makes one that can");
+    if (!presenter_->can_copy())
+        return screen_.tell_error("store", "the window's pictures cannot be read on this device");
+    const darkroom::ImageRef image{.image = frame.image,
+                                   .view = frame.view,
+                                   .format = presenter_->format(),
+                                   .extent = frame.extent,
+                                   .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    Result<darkroom::Readback> read = darkroom::Readback::create(device_->context(), image);
+    if (!read) return screen_.tell_error("store", read.error().text);
+    read->record(frame.commands);
+    stores_.push_back({.frame = frame.number, .path = path, .picture = std::move(*read)});
+}
+
+void Viewer::finish_stores(bool waits) {
+    while (!stores_.empty() && presenter_->is_finished(stores_.front().frame)) {
+        Store store = std::move(stores_.front());
+        stores_.pop_front();
+        // Read here: the images may go. Written beside the frames.
+        std::function<Result<>()> write;
+        if (store.picture && store.has_floats) {
+            write = [pixels = store.picture->floats(4), extent = store.picture->extent(), path = store.path,
+                     is_light = store.transfer == darkroom::window::PaneTransfer::SceneLinear]() mutable {
+                for (std::size_t i = 0; is_light && i < pixels.size(); ++i)
+                    if (i % 4 != 3) pixels[i] = darkroom::srgb_encode(std::clamp(pixels[i], 0.0F, 1.0F));
+                return app::write(path, {.extent = extent, .pixels = std::move(pixels)}, {});
+            };
+        } else if (store.picture) {
+            write = [bytes = store.picture->bytes(), extent = store.picture->extent(), path = store.path] {
+                return app::write(path, {.extent = extent, .bytes = bytes}, {});
+            };
+        } else {
+            write = [frame = std::make_shared<darkroom::FrameFile>(frame_file(store.of, store.layers->layers())),
+                     path = store.path] { return darkroom::write_frame(path, *frame); };
+        }
+        writing_.push_back(start_beside([write = std::move(write), path = store.path] {
+            try {
+                const Result<> done = write();
+                std::error_code error;
+                if (!done && std::filesystem::is_empty(path, error) && !error) std::filesystem::remove(path, error);
+                return std::pair(done ? "stored " + shown(path) : done.error().text, !done);
+            } catch (const std::exception& exception) {
+                return std::pair(fmt::format("{}: cannot be written: {}", shown(path), exception.what()), true);
+            }
+        }));
+    }
+    while (!writing_.empty() &&
+           (waits || writing_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+        const auto [line, is_error] = writing_.front().get();
+        writing_.pop_front();
+        is_error ? screen_.tell_error("store", line) : tell(line);
+        if (waits && is_error) failed_ = line;
+    }
+}
+
+}  // namespace app

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// The commands of a frame: the source, the looks that are seen, the interface over them.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "programs/darkroom/run/jitter.hpp"
+#include "viewer_state.hpp"
+
+namespace app {
+
+using darkroom::Result;
+using darkroom::window::PresentFrame;
+
+namespace {
+
+VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
+
+}  // namespace
+
+std::array<bool, side_count> Viewer::shown_sides() const {
+    std::array<bool, side_count> out{};
+    out[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
+    if (screen_.is_comparing())
+        for (const Side side : {screen_.left(), screen_.right()})
+            if (side != Side::Other || !other_picture_) out[static_cast<std::size_t>(side)] = true;
+    return out;
+}
+
+// What the frame shows is made in the same commands, before it.
+Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
+    const Result<LookView*> look = view(Side::Look);
+    if (!look) return failure(look.error());
+    const bool is_first = (*look)->most().width == 0;
+    // Every side asks for the room that is wanted, and frames are as large as all that are shown can take by now.
+    const VkExtent2D wanted = extent;
+    const std::array<bool, side_count> is_shown = shown_sides();
+    for (std::size_t side = 0; side < side_count; ++side) {
+        if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
+        settle(fmt::format("fit {}", side),
+               views_[side]->fit(*source_, wanted, interface_->format(), !wanted_.pictures.empty()));
+        extent = least_of(extent, views_[side]->most());
+    }
+    full_extent_ = extent;
+    made_extent_ = {(extent.width + divisor_ - 1) / divisor_, (extent.height + divisor_ - 1) / divisor_};
+    const VkExtent2D drawn = scaled(made_extent_, scale_);
+    const LiveMoment now = moment();
+    bool must_wait = source_->must_wait(now, drawn) || interface_->must_wait(full_extent_, made_extent_);
+    for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(made_extent_));
+    if (EditPanels* const panels = screen_.panels(); panels != nullptr && !is_first)
+        must_wait = must_wait || (*look)->must_wait_to_watch(panels->watched((*look)->composer().current_plan()),
+                                                             panels->watched_level());
+    if (must_wait)
+        if (Result<> done = presenter_->wait(); !done) return done;
+    if (!is_first)
+        if (Result<> done = watch(); !done) return done;
+    if (Result<> done = source_->prepare(now, drawn); !done) return done;
+    last_orbit_ = scene_ != nullptr ? std::optional(now.orbit) : std::nullopt;
+    last_jitter_ = now.jitter.now;
+    if (is_first)
+        if (Result<> done = (*look)->fit(*source_, made_extent_, interface_->format()); !done) return done;
+    return record(frame);
+}
+
+Result<> Viewer::record(const PresentFrame& frame) {
+    if (Result<> done = source_->record(frame.commands); !done) return done;
+    if (other_picture_) other_picture_->record(*device_, frame.commands);
+    const Result<LookView*> look = view(Side::Look);
+    if (!look) return failure(look.error());
+    for (const auto& any : views_)
+        if (any)
+            if (Result<> done = any->resize(made_extent_); !done) return done;
+    if (const std::optional<darkroom::ImageRef> display = source_->display_picture()) {
+        (*look)->copy(frame.commands, *display);
+        return {};
+    }
+    darkroom::Frame input = source_->frame();
+    if (scene_ != nullptr) {
+        input.time = time_;
+        input.delta_time = delta_time_;
+        input.frame_index = frame_index_;
+        input.camera.is_cut = is_cut_;
+    }
+    const bool is_kept = is_picture_kept();
+    if (interface_->is_given()) {
+        const Result<darkroom::ImageRef> ui =
+            interface_->record(frame.commands, frame.slot, full_extent_, made_extent_, window_->scale());
+        if (!ui) return failure(ui.error());
+        input.ui = *ui;
+    }
+    if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
+    const std::array<bool, side_count> is_shown = shown_sides();
+    for (std::size_t side = 0; side < side_count; ++side)
+        if (is_shown[side] && !(is_kept && views_[side] && views_[side]->is_current()))
+            if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
+    is_cut_ = false;
+    developed_version_ = document_->version();
+    return inspect(frame.commands, input);
+}
+
+Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame) {
+    const Result<LookView*> found = view(side);
+    if (!found) return failure(found.error());
+    LookView& of = **found;
+    if (of.most().width == 0)
+        if (Result<> done = of.fit(*source_, full_extent_, interface_->format()); !done) return done;
+    // Only frames of fewer lines have another size than their picture.
+    const VkExtent2D extent = scale_ < 1 ? made_extent_ : frame.color.used_region().extent;
+    if (Result<> done = of.resize(extent); !done) return done;
+    if (is_fixed()) of.composer().wait_for_kernels();
+    has_developed_ = true;
+    // A plan that does not fit yet is on its way: the picture stays what it was.
+    const Result<> recorded = of.record(commands, frame);
+    if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);
+    return {};
+}
+
+}  // namespace app

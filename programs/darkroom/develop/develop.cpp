@@ -1,0 +1,565 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "core/text/param_text.hpp"
+#include "develop/developer.hpp"
+#include "image/frame/sequence.hpp"
+#include "image/picture/alpha.hpp"
+#include "image/picture/resize.hpp"
+#include "programs/darkroom/commands.hpp"
+#include "programs/darkroom/flags/device_flags.hpp"
+#include "programs/darkroom/flags/frame_flags.hpp"
+#include "programs/darkroom/flags/look_flags.hpp"
+#include "programs/darkroom/flags/number_flag.hpp"
+#include "programs/darkroom/flags/run_flags.hpp"
+#include "programs/darkroom/run/dim_bloom.hpp"
+#include "programs/darkroom/run/frames.hpp"
+#include "programs/darkroom/run/motion.hpp"
+#include "programs/darkroom/run/outputs.hpp"
+#include "programs/darkroom/run/report.hpp"
+#include "programs/darkroom/run/sequence_run.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::Result;
+using darkroom::user_error;
+
+/// Of frames that say nothing else: as DevelopInput has it.
+constexpr double usual_frames_per_second = 60;
+/// Of a stream of pictures, where nothing says how fast they go.
+constexpr double stream_frames_per_second = 24;
+
+struct Options {
+    LookFlags look;
+    DeviceFlags device;
+    WriteFlags write;
+    RunFlags run;
+    FrameFlags frame;
+    std::vector<std::string> inputs;
+    std::string out, size, output_size;
+    std::optional<std::string> frames;
+    std::string gaps;
+    NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
+    bool is_reference = false, keeps_layers = false;
+};
+
+/// A name of files with %V, which stands for the eye, and %v, for the first letter of it.
+std::string with_eye(std::string name, const std::string& eye) {
+    if (eye.empty()) return name;
+    for (const auto& [sign, text] : {std::pair<std::string, std::string>{"%V", eye}, {"%v", eye.substr(0, 1)}})
+        for (std::size_t at = 0; (at = name.find(sign, at)) != std::string::npos; at += text.size())
+            name.replace(at, sign.size(), text);
+    return name;
+}
+
+/// One frame to go through the stack. What is read for the sake of effects with history alone makes no picture.
+struct Step {
+    std::size_t place = 0;  ///< among all inputs
+    std::filesystem::path input, output;
+    long long number = 0;
+    bool is_written = false;
+    long long missing = 0;  ///< frames that are asked for and not there, between the one before and this
+};
+
+/// Everything that can be known before a frame is read.
+struct Job {
+    std::string eye, out;
+    std::vector<darkroom::NumberedFile> inputs;
+    std::optional<darkroom::FrameSet> frames;  ///< else all are asked for
+    std::vector<Step> steps;
+    std::size_t skipped = 0;  ///< pictures that are there already
+    std::size_t jobs = 0;
+    darkroom::Look look;
+    Timeline timeline;
+    darkroom::FrameOptions frame;
+    darkroom::WriteOptions write;
+    darkroom::DevelopDesc develop;
+    std::optional<darkroom::NewSize> size;
+    std::optional<double> time, frames_per_second;
+    std::optional<StreamDesc> stream;
+    long long step = 1;  ///< from one input's number to the next, where none is missing
+
+    [[nodiscard]] bool is_asked_for(long long number) const { return !frames || frames->contains(number); }
+};
+
+darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
+    return user_error(
+        fmt::format("--keep-layers: {} holds no layers; .exr does", darkroom::printable(output.string())));
+}
+
+/// How many frames that are asked for are missing before an input.
+long long missing_before(const Job& job, std::size_t place) {
+    if (place == 0) return 0;
+    long long out = 0;
+    const long long before = job.inputs[place - 1].number, last = job.inputs[place].number;
+    if (!job.frames) return std::max(0LL, (last - before) / job.step - 1);
+    for (long long number = before + job.step; number < last; number += job.step) out += job.is_asked_for(number);
+    return out;
+}
+
+/// Streams go on at their pace over frames that are missing, or do not begin.
+Result<> check_gaps(const Options& options, const Job& job) {
+    if (!options.gaps.empty() && options.gaps != "hold" && options.gaps != "stop")
+        return user_error(fmt::format("--gaps {}: allowed is hold, stop", darkroom::printable(options.gaps)));
+    if (!options.gaps.empty() && !job.stream) return user_error("--gaps: works for -o -, not for files");
+    if (options.gaps != "stop") return {};
+    for (const Step& step : job.steps)
+        if (step.is_written && step.missing > 0)
+            return user_error(fmt::format("--gaps stop: {} frames are missing before {}", step.missing,
+                                          darkroom::printable(step.input.string())));
+    return {};
+}
+
+/// The frames that are asked for and are not there yet, each with those before it that histories need.
+Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
+    const std::vector<darkroom::NumberedFile>& inputs = job.inputs;
+    const auto is_in_range = [&](long long number) { return job.is_asked_for(number); };
+    using Paths = std::vector<std::filesystem::path>;
+    Paths also_read = options.look.input_files();
+    std::ranges::move(ui_files(job.look), std::back_inserter(also_read));
+    const Result<Paths> outputs =
+        job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
+                   : output_paths(inputs, job.out, also_read, is_in_range, options.run.missing_folders());
+    if (!outputs) return failure(outputs.error());
+    if (job.stream) job.develop.target = target_for(job.stream->format);
+    if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
+    for (const std::filesystem::path& output : job.stream ? Paths() : *outputs) {
+        const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
+        if (!samples) return failure(samples.error());
+        if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
+            return no_place_for_layers(output);
+        job.develop.target = target_for(*samples, job.write);
+        job.develop.color = darkroom::color_of(job.write, *samples);
+    }
+    // Made of the picture before it is rounded.
+    if (job.write.has_alpha_of_glow && job.develop.target == darkroom::DevelopTarget::Encoded8)
+        job.develop.target = darkroom::DevelopTarget::EncodedFloat;
+    if (job.write.alpha) job.develop.color = with_alpha(job.develop.color, job.develop.target, job.write);
+    suit(job.look, job.develop.target, job.write);
+    if (!job.stream)
+        if (Result<> done = check_codes(job.look, job.develop.target, job.write); !done) return done;
+    std::size_t next_written = inputs.size();
+    for (std::size_t i = inputs.size(); i-- > 0;) {
+        const bool is_asked_for = is_in_range(inputs[i].number);
+        const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
+        job.skipped += is_asked_for && !is_written ? 1 : 0;
+        if (is_written) next_written = i;
+        if (next_written < inputs.size() && next_written - i <= pre_roll)
+            job.steps.push_back({i, inputs[i].path, (*outputs)[i], inputs[i].number, is_written});
+    }
+    std::ranges::reverse(job.steps);
+    for (Step& step : job.steps) step.missing = missing_before(job, step.place);
+    return check_gaps(options, job);
+}
+
+/// What is read, and the place of the last one that is asked for.
+Result<std::size_t> add_inputs(const Options& options, Job& job) {
+    std::vector<std::string> names = options.inputs;
+    for (std::string& name : names) name = with_eye(name, job.eye);
+    // Files of one eye each have no other.
+    if (names != options.inputs) job.frame.view.clear();
+    Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(names);
+    if (!inputs) return failure(std::move(inputs));
+    job.inputs = std::move(*inputs);
+    // Frames on twos are a step apart as others are.
+    long long least = 0;
+    for (std::size_t i = 1; i < job.inputs.size(); ++i)
+        if (const long long step = job.inputs[i].number - job.inputs[i - 1].number; step > 0)
+            least = least == 0 ? step : std::min(least, step);
+    job.step = std::max(1LL, least);
+    if (options.frames) {
+        Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
+        if (!parsed) return failure(std::move(parsed));
+        job.frames = std::move(*parsed);
+    }
+    for (std::size_t i = job.inputs.size(); i-- > 0;)
+        if (job.is_asked_for(job.inputs[i].number)) return i;
+    return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
+                                  darkroom::printable(options.frames.value_or("")), job.inputs.size()));
+}
+
+/// What the flags say goes before what the frame says. Frames that cannot be read have none.
+std::optional<double> time_of(const Job& job, std::size_t place) {
+    if (job.time) return job.time;
+    const darkroom::NumberedFile& input = job.inputs[place];
+    if (job.frames_per_second) return static_cast<double>(input.number) / *job.frames_per_second;
+    const Result<std::optional<double>> time = darkroom::read_frame_time(input.path, job.frame.names);
+    return time ? std::optional(time->value_or(0)) : std::nullopt;
+}
+
+/// `eye`: one of those that are asked for.
+Result<Job> job_of(const Options& options, const std::string& eye) {
+    Job job{.eye = eye, .out = with_eye(options.out, eye)};
+    if (options.frame.eyes().size() > 1 && job.out == options.out)
+        return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
+    if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
+    if (options.keeps_layers && options.frame.keeps_overscan)
+        return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
+    if (!options.output_size.empty() && options.keeps_layers)
+        return user_error("--output-size: works without --keep-layers, which keeps layers at the frame's size");
+    if (options.is_reference && options.run.has_timings)
+        return user_error("--timings: works without --reference, which does not run on the device");
+    if (options.time.is_given() && options.frames_per_second.is_given())
+        return user_error("--time: --fps sets the time of every frame; give one of the two");
+    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
+    if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
+        return failure(std::move(done));
+    if (Result<> done = options.write.ocio.check(options.frame.has_input_space()); !done)
+        return failure(std::move(done));
+    Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration, eye);
+    if (!frame) return failure(std::move(frame));
+    job.frame = std::move(*frame);
+    Result<darkroom::WriteOptions> write = options.write.options();
+    if (!write) return failure(std::move(write));
+    job.write = std::move(*write);
+    Result<std::optional<StreamDesc>> stream =
+        options.write.stream(job.out, job.frames_per_second.value_or(stream_frames_per_second));
+    if (!stream) return failure(std::move(stream));
+    job.stream = *stream;
+    if (job.stream)
+        if (Result<> done = options.run.check_stream(); !done) return failure(std::move(done));
+    const Result<std::size_t> jobs = options.run.jobs();
+    if (!jobs) return failure(jobs.error());
+    job.jobs = *jobs;
+    if (!options.size.empty()) {
+        const Result<darkroom::NewSize> size = parse_new_size(options.size);
+        if (!size) return failure(size.error());
+        job.size = *size;
+    }
+    if (!options.output_size.empty()) {
+        const Result<VkExtent2D> size = parse_size(options.output_size, "--output-size");
+        if (!size) return failure(size.error());
+        job.develop.target_extent = *size;
+    }
+    const Result<darkroom::KernelStage> stage = options.device.stage();
+    if (!stage) return failure(stage.error());
+    job.develop.kernels = *stage;
+    job.develop.fuse = options.device.is_fused();
+    job.develop.frames_in_flight = 2;
+    Result<darkroom::Look> look = options.look.look_of_frames();
+    if (!look) return failure(std::move(look));
+    job.look = std::move(*look);
+    if (Result<> done = check_ui_files(job.look); !done) return failure(std::move(done));
+    if (!options.look.events.empty()) {
+        Result<Timeline> timeline = Timeline::read(options.look.events, job.look);
+        if (!timeline) return failure(std::move(timeline));
+        job.timeline = std::move(*timeline);
+    }
+    const double delta_time = 1 / job.frames_per_second.value_or(usual_frames_per_second);
+    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.timeline, job.frame);
+    if (!pre_roll) return failure(pre_roll.error());
+    job.frame.keeps_halves = !options.is_reference;
+    const Result<std::size_t> last = add_inputs(options, job);
+    if (!last) return failure(last.error());
+    const Motion motion(job.look, job.timeline, [&job](std::size_t place) { return time_of(job, place); });
+    const Result<std::uint32_t> moved_pre_roll = motion.pre_roll(job.look, delta_time, *last);
+    if (!moved_pre_roll) return failure(moved_pre_roll.error());
+    if (Result<> done = add_steps(options, std::max(*pre_roll, *moved_pre_roll), job); !done)
+        return failure(std::move(done));
+    // One file is decoded by all threads, several by one each.
+    if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
+    return job;
+}
+
+class Develop {
+  public:
+    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)), items_(job_.steps.size()) {
+        if (job_.stream) stream_.emplace(*job_.stream);
+    }
+
+    Result<> run() {
+        const auto pictures = std::ranges::count(job_.steps, true, &Step::is_written);
+        RunFlags::tell_of_skipped(job_.skipped, job_.skipped + static_cast<std::size_t>(pictures));
+        const Result<> done = run_sequence({.steps = job_.steps.size(),
+                                            .pictures = static_cast<std::size_t>(pictures),
+                                            .jobs = job_.jobs,
+                                            .in_flight = options_.is_reference ? 1U : job_.develop.frames_in_flight,
+                                            .keeps_going = options_.run.keeps_going,
+                                            .has_timings = options_.run.has_timings},
+                                           {.decode = [this](std::size_t i) { return decode(i); },
+                                            .begin = [this](std::size_t i) { return begin(i); },
+                                            .finish = [this](std::size_t i) { return finish_step(i); },
+                                            .encode = [this](std::size_t i) { return encode(i); },
+                                            .deliver = [this](std::size_t i) { return deliver(i); },
+                                            .made = [this](std::size_t i) { return made(i); },
+                                            .release = [this](std::size_t i) { items_[i] = {}; }});
+        if (options_.run.has_timings && done) pass_times_.print();
+        return done;
+    }
+
+    [[nodiscard]] int exit_code(int code) const { return device_ ? app::finish(*device_, code) : code; }
+
+  private:
+    /// What a step has while it is under way.
+    struct Item {
+        darkroom::FrameFile frame;
+        std::vector<darkroom::ReferenceLight> lights;
+        std::shared_ptr<const std::vector<std::uint8_t>> ui;
+        darkroom::DevelopInput input;
+        darkroom::DevelopedPicture picture;
+        std::vector<std::byte> packed;  ///< of a stream: what goes out
+        VkExtent2D extent{};
+    };
+
+    // The device is made when the first frame has been read: an unreadable one is refused at once.
+    Result<> make_composer() {
+        const std::lock_guard lock(making_);
+        if (composer_) return {};
+        Result<darkroom::Device> device =
+            options_.is_reference ? options_.device.create_if_named() : options_.device.create();
+        if (!device) return failure(std::move(device));
+        auto made = std::make_unique<darkroom::Device>(std::move(*device));
+        auto composer = std::make_unique<darkroom::Composer>(
+            *made, darkroom::ComposerDesc{.frames_in_flight = job_.develop.frames_in_flight,
+                                          .has_timers = options_.run.has_timings});
+        if (Result<> done = darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}); !done)
+            return done;
+        developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
+        device_ = std::move(made);
+        composer_ = std::move(composer);
+        return {};
+    }
+
+    [[nodiscard]] std::string shown(std::size_t i) const { return darkroom::printable(job_.steps[i].input.string()); }
+
+    Result<> decode(std::size_t i) {
+        const Step& step = job_.steps[i];
+        darkroom::FrameOptions options = job_.frame;
+        options.camera_file = darkroom::numbered(options.camera_file, step.number);
+        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, options);
+        if (!frame) return failure(std::move(frame));
+        if (Result<> done = make_composer(); !done) return done;
+        const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame->color.width, frame->color.height})
+                                           .of(frame->color.width, frame->color.height);
+        if (Result<> done = darkroom::check_extent(*device_, {size.width, size.height}); !done)
+            return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
+        // Alpha that is not kept is a mask at most, as scenes write it.
+        const bool has_alpha = job_.write.alpha && frame->has_alpha;
+        if (has_alpha && !frame->is_associated) darkroom::associate(frame->color);
+        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), size);
+        if (!sized) return failure(std::move(sized));
+        Item& item = items_[i];
+        item.frame = std::move(*sized);
+        item.lights = take_lights(item.frame);
+        item.input = develop_input(item.frame, item.lights);
+        item.input.is_color_associated = has_alpha;
+        set_time(step, item);
+        return {};
+    }
+
+    /// What the flags say goes before what the frame says, and that before what its name says.
+    void set_time(const Step& step, Item& item) const {
+        const auto number = static_cast<std::uint64_t>(std::max(0LL, step.number));
+        if (!item.frame.frame_index) item.input.frame_index = number;
+        if (job_.time) item.input.time = *job_.time;
+        if (!job_.frames_per_second) return;
+        item.input.time = static_cast<double>(step.number) / *job_.frames_per_second;
+        item.input.delta_time = static_cast<double>(job_.step) / *job_.frames_per_second;
+    }
+
+    /// Does motion lead from this one to that which was developed before it?
+    [[nodiscard]] bool follows(const Step& step) const {
+        if (step.place != next_place_) return false;
+        return step.place == 0 || step.number - job_.inputs[step.place - 1].number == job_.step;
+    }
+
+    Result<> begin(std::size_t i) {
+        Item& item = items_[i];
+        for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        if (i == 0) tell_of_assumed_view(item.frame, shown(i));
+        item.input.camera.is_cut = !follows(job_.steps[i]);
+        next_place_ = job_.steps[i].place + 1;
+        if (Result<> done = motion_.advance(*composer_, job_.steps[i].place, item.input.time); !done) return done;
+        const VkExtent2D output = job_.develop.target_extent;
+        const auto ui = motion_.picture(output.width != 0 ? output : item.input.extent);
+        if (!ui) return failure(ui.error());
+        item.ui = *ui;
+        item.input.ui = *item.ui;
+        if (options_.is_reference) {
+            std::vector<std::string> left_out;
+            Result<darkroom::DevelopedPicture> picture =
+                develop_by_reference(*composer_, item.input, job_.develop, histories_, left_out);
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            tell_of_what_is_left_out(i, left_out);
+            return {};
+        }
+        if (Result<> done = developer_->submit(*composer_, item.input); !done) return done;
+        tell_of_what_is_left_out(i, developer_->plan().left_out);
+        if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
+        return {};
+    }
+
+    /// Where it is not what was left out of the frame before.
+    void tell_of_what_is_left_out(std::size_t i, const std::vector<std::string>& left_out) {
+        if (last_left_out_ && *last_left_out_ == left_out) return;
+        const std::string frame = job_.steps.size() > 1 ? shown(i) + ": " : "";
+        const std::size_t told = warn_of_what_is_left_out(job_.look, *composer_, left_out, frame);
+        if (told == 0 && last_left_out_) warn(fmt::format("{}nothing is left out any more", frame));
+        last_left_out_ = left_out;
+    }
+
+    Result<> finish_step(std::size_t i) {
+        Item& item = items_[i];
+        if (!options_.is_reference) {
+            Result<darkroom::DevelopedPicture> picture = developer_->finish();
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            if (options_.run.has_timings) pass_times_.add(composer_->times().passes);
+        }
+        item.extent = item.picture.extent;
+        item.lights = {};
+        // A stack may make a picture of another size, which has no such window.
+        const bool has_frames_size =
+            item.extent.width == item.input.extent.width && item.extent.height == item.input.extent.height;
+        if (!has_frames_size) item.frame.display.reset();
+        item.frame = {.display = item.frame.display, .attributes = std::move(item.frame.attributes)};
+        return {};
+    }
+
+    Result<> encode(std::size_t i) {
+        if (!job_.steps[i].is_written) return {};
+        if (stream_) {
+            items_[i].packed = stream_->pack(std::exchange(items_[i].picture, {}));
+            return {};
+        }
+        darkroom::WriteOptions options = job_.write;
+        options.attributes = items_[i].frame.attributes;
+        if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
+        if (options_.keeps_layers)
+            if (Result<> done = keep_layers(i, options); !done) return done;
+        return write(job_.steps[i].output, std::move(items_[i].picture), options);
+    }
+
+    /// Read again, so that only those that are being encoded are in memory.
+    Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
+        Result<darkroom::KeptLayers> layers = darkroom::read_kept_layers(job_.steps[i].input, job_.frame);
+        if (!layers) return failure(std::move(layers));
+        for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
+        return {};
+    }
+
+    Result<> deliver(std::size_t i) {
+        if (!stream_ || !job_.steps[i].is_written) return {};
+        const long long missing = job_.steps[i].missing;
+        if (missing > 0 && !last_packed_.empty()) {
+            warn(
+                fmt::format("{} frames are missing before {}: the stream holds the one before; --gaps stop refuses "
+                            "such sequences",
+                            missing, shown(i)));
+            for (long long held = 0; held < missing; ++held)
+                if (Result<> done = stream_->write(last_packed_, items_[i].extent, shown(i)); !done) return done;
+        }
+        if (Result<> done = stream_->write(items_[i].packed, items_[i].extent, shown(i)); !done) return done;
+        last_packed_ = has_gaps_ ? std::move(items_[i].packed) : std::vector<std::byte>();
+        return {};
+    }
+
+    [[nodiscard]] std::optional<Made> made(std::size_t i) const {
+        const Step& step = job_.steps[i];
+        if (!step.is_written) return std::nullopt;
+        const auto [width, height] = items_[i].extent;
+        return Made{.from = step.input.string(), .to = step.output.string(), .width = width, .height = height};
+    }
+
+    const Options& options_;
+    Job job_;
+    std::vector<Item> items_;
+    std::optional<PictureStream> stream_;
+    std::mutex making_;
+    std::unique_ptr<darkroom::Device> device_;
+    std::unique_ptr<darkroom::Composer> composer_;
+    Motion motion_{job_.look, job_.timeline,  // moves the composer, so it goes first
+                   [this](std::size_t place) { return time_of(job_, place); }};
+    std::unique_ptr<darkroom::Developer> developer_;
+    std::optional<std::vector<std::string>> last_left_out_;
+    std::size_t next_place_ = 0;
+    /// Of a stream with gaps: the picture before.
+    std::vector<std::byte> last_packed_;
+    bool has_gaps_ = std::ranges::any_of(job_.steps, [](const Step& step) { return step.missing > 0; });
+    darkroom::ReferenceHistories histories_;
+    PassTimes pass_times_;
+};
+
+int run(const Options& options, const std::string& eye) {
+    Result<Job> job = job_of(options, eye);
+    if (!job) return fail(job.error());
+    tell_of_half_range(job->write);
+    Develop develop(options, std::move(*job));
+    const Result<> done = develop.run();
+    return develop.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+/// One eye after the other.
+int run(const Options& options) {
+    for (const std::string& eye : options.frame.eyes())
+        if (const int code = run(options, eye); code != exit_ok) return code;
+    return exit_ok;
+}
+
+}  // namespace
+
+static Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command = program.add_command("develop", "Develops HDR frames into finished pictures");
+    const auto options = std::make_shared<Options>();
+    command.examples(
+        "darkroom develop frame.exr --look my.toml --exposure 2 -o picture.png\n"
+        "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
+        "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
+    command
+        .add_option("INPUT", options->inputs, "Frames (EXR, HDR, PNG, JPEG, TIFF); ####, %04d or $F4 for all numbers")
+        .required();
+    command
+        .add_option("-o,--output,--out", options->out,
+                    "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
+                    "{name}; - is standard output, with --format")
+        .type_name("OUT")
+        .required();
+    command
+        .add_option("--size", options->size, "Resamples the frame first, to within this size; :fill, :stretch: to it")
+        .type_name("WxH[:fit|fill|stretch]");
+    command
+        .add_option("--output-size", options->output_size,
+                    "Size of the picture of smaller frames, by upscalers or bilinear")
+        .type_name("WxH");
+    command.add_flag("--keep-layers", options->keeps_layers,
+                     "Puts the frame's other layers beside the picture in an .exr file");
+    command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
+    command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
+        .type_name("A-B");
+    command.add_option("--gaps", options->gaps, "Of -o -, where one is missing: the one before, or the end")
+        .type_name("hold|stop")
+        .default_str("hold");
+    options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");
+    options->frames_per_second.add_to(command, "Frames a second, for times and motion").type_name("N");
+    options->frame.add_to(command);
+    options->write.add_to(command);
+    options->run.add_to(command);
+    options->device.add_to(command);
+    options->look.add_to(command, true, named);
+    return {command, [options] { return run(*options); },
+            [options]() -> Result<> {
+                const Result<Job> job = job_of(*options, options->frame.eyes().front());
+                if (!job) return failure(job.error());
+                return {};
+            }};
+}
+
+CommandRow develop_command() {
+    return {.names = {"develop"}, .place = 20, .add = [](const CommandHost& host) {
+                return std::vector{add_develop(host.program, host.named)};
+            }};
+}
+
+}  // namespace app

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// darkroom farm task: what a machine of a farm does: one chunk, tried again where it fails, and a record of it.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include "core/text/param_text.hpp"
+#include "farm.hpp"
+#include "farm_process.hpp"
+#include "farm_work.hpp"
+#include "programs/darkroom/flags/run_flags.hpp"
+#include "programs/darkroom/flags/run_program.hpp"
+#include "programs/darkroom/run/outputs.hpp"
+#include "programs/darkroom/run/report.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+
+namespace {
+
+constexpr std::int64_t most_tries = 4;  // the first, and three more
+constexpr std::chrono::seconds pause{1};
+
+std::string node_name() {
+    std::array<char, 256> name{};
+    const char* const slurm = std::getenv("SLURMD_NODENAME");
+    if (slurm != nullptr) return slurm;
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+/// "17_3": the job and its task.
+std::string job_name() {
+    const char *const job = std::getenv("SLURM_ARRAY_JOB_ID"), *const task = std::getenv("SLURM_ARRAY_TASK_ID");
+    return job != nullptr && task != nullptr ? fmt::format("{}_{}", job, task) : "";
+}
+
+FrameNumbers numbers_there(const FarmWork& work) {
+    FrameNumbers out;
+    for (const FarmFrame& frame : work.frames)
+        if (is_there(frame.picture)) out.insert(frame.number);
+    return out;
+}
+
+class Task {
+  public:
+    Task(const FarmFlags& flags, FarmWork work) : flags_(flags), work_(std::move(work)) {}
+
+    Result<int> run() {
+        if (Result<> done = begin(); !done) return failure(std::move(done));
+        while (!is_done() && record_.tries < most_tries) {
+            if (record_.tries > 0) std::this_thread::sleep_for(pause);
+            ++record_.tries;
+            if (Result<> done = try_once(); !done) return failure(std::move(done));
+        }
+        record_.state = is_done() ? ChunkState::done : ChunkState::failed;
+        if (Result<> done = write(); !done) return failure(std::move(done));
+        if (is_done()) return exit_ok;
+        const FrameNumbers left = without(record_.frames, record_.done);
+        complain(fmt::format("frames {} failed in {} tries: {}", shown(left), record_.tries,
+                             printable((work_.folder / (record_.name + ".json")).string())));
+        return code_;
+    }
+
+  private:
+    [[nodiscard]] bool is_done() const { return record_.done.size() == record_.frames.size(); }
+
+    Result<> begin() {
+        const Result<darkroom::FrameSet> frames = parse_frames(flags_.frames());
+        if (!frames) return failure(frames.error());
+        const std::vector<long long> numbers = frames->numbers();
+        record_.name = frames->is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
+                                          : darkroom::frame_set_text(numbers);
+        record_.names = work_.names;
+        record_.node = node_name();
+        record_.job = job_name();
+        record_.begun = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+        for (const FarmFrame& frame : work_.frames) record_.frames.insert(frame.number);
+        record_.done = numbers_there(work_);
+        there_before_ = record_.done.size();
+        std::error_code error;
+        fs::create_directory(work_.folder, error);
+        if (error)
+            return darkroom::machine_error(
+                fmt::format("{}: cannot be made: {}", printable(work_.folder.string()), error.message()));
+        return write();
+    }
+
+    Result<> try_once() {
+        std::error_code error;
+        std::vector<std::string> arguments{fs::read_symlink("/proc/self/exe", error).string()};
+        for (std::string& argument : flags_.command(flags_.frames())) arguments.push_back(std::move(argument));
+        if (current_voice() != Voice::Usual) arguments.emplace_back(current_voice() == Voice::Quiet ? "-q" : "-v");
+        // Where this process is killed, nobody sends a signal on: that one asks to get it.
+        ::setenv(task_of_farm, std::to_string(::getpid()).c_str(), 1);
+        const Result<ProcessOutcome> outcome = run_process(arguments, ProcessOutput::Told);
+        if (!outcome) return failure(outcome.error());
+        record_.done = numbers_there(work_);
+        record_.errors = outcome->errors;
+        if (outcome->code > 128) record_.errors.push_back(fmt::format("ended by signal {}", outcome->code - 128));
+        code_ = outcome->code == exit_user ? exit_user : exit_machine;
+        return write();
+    }
+
+    Result<> write() {
+        record_.made = static_cast<std::int64_t>(record_.done.size() - std::min(there_before_, record_.done.size()));
+        record_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        return write_record(work_.folder, record_);
+    }
+
+    const FarmFlags& flags_;
+    FarmWork work_;
+    ChunkRecord record_;
+    std::size_t there_before_ = 0;
+    int code_ = exit_machine;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What a job of these arguments was submitted with must be what its tasks read.
+Result<> check_submitted(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
+    const Result<std::optional<FarmJob>> job = read_job(work.folder);
+    if (!job) return failure(job.error());
+    if (!*job || !has_arguments(**job, flags.task())) return {};
+    const Result<FarmInputs> inputs = flags.check(work, named);
+    return inputs ? check_inputs(work.folder, **job, *inputs) : failure(inputs.error());
+}
+
+int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {
+    if (flags.frames().empty()) return fail_user("farm task: --frames A-B is needed");
+    Result<FarmWork> work = flags.work();
+    if (!work) return fail(work.error());
+    if (const Result<> done = check_submitted(flags, *work, named); !done) return fail(done.error());
+    const Result<int> code = Task(flags, std::move(*work)).run();
+    return code ? *code : fail(code.error());
+}
+
+}  // namespace
+
+Command add_farm_task(CommandFlags farm, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command =
+        farm.add_command("task", "Makes one chunk, tried again three times at most, and writes a record of it");
+    command.examples(
+        "darkroom farm task 'shot.####.exr' -o . --frames 1-1\n"
+        "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2 -- --exposure 2\n"
+        "darkroom farm task scene.toml -o 'scene.####.png' --frames 0-1 -- --size 64x36");
+    const auto flags = std::make_shared<FarmFlags>();
+    flags->add_to(command, "The chunk");
+    return {command, [flags, named] { return run(*flags, named); }};
+}
+
+}  // namespace app

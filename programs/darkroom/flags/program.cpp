@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "program.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
+
+#include "confined/process.hpp"
+#include "core/text/param_text.hpp"
+#include "programs/darkroom/run/report.hpp"
+
+namespace app {
+
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+// The flags and commands that an unknown argument may have been meant to be.
+std::vector<std::string> known_names(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const CLI::App* const child : command.get_subcommands({})) names.push_back(child->get_name());
+    return names;
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& program) {
+    std::vector<std::string> names;
+    for (const CLI::App* const command : program.get_subcommands({})) names.push_back(command->get_name());
+    return names;
+}
+
+// "lut info": a command and whose it is.
+std::string full_name(const CLI::App& command) {
+    const CLI::App* const above = command.get_parent();
+    const bool is_below_another = above != nullptr && above->get_parent() != nullptr;
+    return is_below_another ? fmt::format("{} {}", above->get_name(), command.get_name()) : command.get_name();
+}
+
+std::string unknown_argument(const CLI::App& command, const std::string& argument) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const std::vector<std::string> known = known_names(command);
+    // The amount of some effects has the effect's own name.
+    for (const std::string_view amount : {"-intensity", "-amount", "-strength"}) {
+        const std::string effect = name.ends_with(amount) ? name.substr(0, name.size() - amount.size()) : "";
+        if (std::ranges::find(known, effect) != known.end())
+            return fmt::format("{}: unknown argument '{}', did you mean '{}'?", full_name(command), printable(argument),
+                               effect);
+    }
+    return fmt::format("{}: unknown argument '{}'{}", full_name(command), printable(argument),
+                       darkroom::suggestion(name, known));
+}
+
+// Of the commands that were typed, and theirs, the one with an argument that nobody took.
+const CLI::App* command_with_rest(const CLI::App& program) {
+    for (const CLI::App* const command : program.get_subcommands()) {
+        if (const CLI::App* const inner = command_with_rest(*command)) return inner;
+        if (!command->remaining().empty()) return command;
+    }
+    return nullptr;
+}
+
+// The first argument nobody took.
+std::string unknown_argument(const CLI::App& program) {
+    if (const CLI::App* const command = command_with_rest(program))
+        return unknown_argument(*command, command->remaining().front());
+    const std::vector<std::string> rest = program.remaining();
+    if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(names_of_commands(program), ", "));
+    return unknown_command(program, rest.front());
+}
+
+darkroom::Failure value_needed(std::string_view flag) {
+    return user_error(fmt::format("{}: one value is needed", printable(flag)));
+}
+
+// "--size: At Most 1 required but received 2": it stands twice.
+darkroom::Failure mismatch(std::string_view text) {
+    constexpr std::string_view too_often = ": At Most 1 required but received ";
+    const std::string_view flag = text.substr(0, text.find(':'));
+    const std::size_t found = text.find(too_often);
+    if (found == std::string_view::npos) return value_needed(flag);
+    return user_error(
+        fmt::format("{}: stands {} times, once is allowed", printable(flag), text.substr(found + too_often.size())));
+}
+
+std::string missing(const CLI::App& program, const char* text) {
+    for (const CLI::App* const command : program.get_subcommands())
+        if (command->get_require_subcommand_min() > 0 && command->get_subcommands().empty())
+            return fmt::format("{}: {}", command->get_name(), unknown_argument(*command));
+    return program.get_subcommands().empty() ? unknown_argument(program) : text;
+}
+
+}  // namespace
+
+std::string unknown_command(const CLI::App& program, const std::string& name) {
+    const std::string near = darkroom::suggestion(name, known_names(program));
+    return fmt::format("unknown command '{}'{} allowed is {}", printable(name), near.empty() ? ":" : near,
+                       fmt::join(names_of_commands(program), ", "));
+}
+
+Program::Program()
+    : parser_(std::make_unique<CLI::App>("Renders scenes, and develops raw HDR frames into finished pictures.",
+                                         "darkroom")) {
+    parser_->set_version_flag("--version", "darkroom " DARKROOM_VERSION);
+    parser_->require_subcommand(1);
+    parser_->footer(
+        "darkroom render scene.toml --size 640x360 -o picture.png\n"
+        "darkroom develop frame.exr --exposure 2 --vignette-intensity 0.3 -o picture.png\n"
+        "darkroom develop --help bloom");
+}
+
+Program::~Program() = default;
+
+Result<std::optional<int>> Program::parse(std::span<char* const> arguments) const {
+    // CLI11 would take the next argument for the value.
+    for (std::size_t i = 1; i < arguments.size(); ++i) {
+        const std::string_view argument = arguments[i];
+        if (argument.starts_with("--") && argument.ends_with('=') && argument.find('=') == argument.size() - 1)
+            return value_needed(argument.substr(0, argument.size() - 1));
+    }
+    try {
+        parser_->parse(static_cast<int>(arguments.size()), arguments.data());
+    } catch (const CLI::Success& done) {  // --version
+        return std::optional<int>(parser_->exit(done));
+    } catch (const CLI::ExtrasError&) {
+        return user_error(unknown_argument(*parser_));
+    } catch (const CLI::ArgumentMismatch& error) {
+        return mismatch(error.what());
+    } catch (const CLI::ConversionError& error) {  // "Could not convert: --strict = maybe": of switches alone
+        const std::string text = error.what();
+        const std::size_t end = text.find(": ");
+        return user_error(fmt::format("{}: allowed is true or false",
+                                      printable(end == std::string::npos ? text : text.substr(end + 2))));
+    } catch (const CLI::RequiredError& error) {
+        return user_error(missing(*parser_, error.what()));
+    } catch (const CLI::ParseError& error) {
+        return user_error(printable(error.what()));
+    }
+    return std::optional<int>();
+}
+
+void add_voice(CommandFlags command) {
+    command.parser().add_flag_callback(
+        "-q,--quiet", [] { set_voice(Voice::Quiet); }, "Says nothing but warnings and errors");
+    command.parser().add_flag_callback(
+        "-v,--verbose", [] { set_voice(Voice::Verbose); },
+        "Says more: the device, and all that is left out with the reason");
+    command.parser().add_flag_callback(
+        "--allow-unconfined", [] { darkroom::ConfinedProcess::allow_unconfined(true); },
+        "Decodes files even where the kernel cannot confine their decoders");
+}
+
+bool is_asked(CommandFlags command) { return command.parser().parsed(); }
+
+Result<> check_values(CommandFlags command) {
+    for (const CLI::Option* const option : command.parser().get_options()) {
+        if (option->get_type_name().empty()) continue;
+        for (const std::string& value : option->results())
+            if (value.empty()) return value_needed(option->get_name());
+    }
+    return {};
+}
+
+Trial::Trial() : parser_(std::make_unique<CLI::App>()) {}
+Trial::~Trial() = default;
+
+Result<> Trial::parse(std::vector<std::string> arguments, CommandFlags command) const {
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    try {
+        parser_->parse(arguments);
+    } catch (const CLI::ExtrasError&) {
+        const std::vector<std::string> rest = command.parser().remaining();
+        return user_error(unknown_argument(command.parser(), rest.empty() ? std::string() : rest.front()));
+    } catch (const CLI::ParseError& problem) {
+        return user_error(fmt::format("{}: {}", command.name(), printable(problem.what())));
+    }
+    return {};
+}
+
+}  // namespace app

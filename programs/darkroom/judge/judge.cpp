@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// darkroom judge: how far the pictures of a temporal filter are from the truth of a capture.
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "core/files.hpp"
+#include "core/srgb.hpp"
+#include "core/text/param_text.hpp"
+#include "image/compare/compare.hpp"
+#include "image/frame/sequence.hpp"
+#include "image/picture/write.hpp"
+#include "judge_report.hpp"
+#include "programs/darkroom/capture/capture_job.hpp"
+#include "programs/darkroom/commands.hpp"
+#include "programs/darkroom/flags/run_flags.hpp"
+#include "programs/darkroom/run/outputs.hpp"
+#include "programs/darkroom/run/report.hpp"
+
+namespace app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using darkroom::FrameFile;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::ShownCodes;
+using darkroom::user_error;
+
+struct Options {
+    std::string truth, test, folder;
+    std::optional<std::string> frames, edge;
+    bool is_json = false;
+};
+
+/// A part of the picture.
+struct Window {
+    std::uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+Result<Window> parse_window(const std::string& text) {
+    std::array<std::uint32_t, 4> numbers{};
+    constexpr std::string_view between = ",,x";
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const auto [next, error] = std::from_chars(at, end, numbers[i]);
+        const bool is_right = i == 3 ? next == end : next != end && *next == between[i];
+        if (error != std::errc() || !is_right || (i >= 2 && numbers[i] == 0))
+            return user_error(fmt::format("--edge {}: expected X,Y,WIDTHxHEIGHT in pixels", printable(text)));
+        at = next + 1;
+    }
+    return Window{numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+/// The pictures of a folder by their frame's number.
+Result<std::map<long long, fs::path>> pictures_of(const fs::path& folder) {
+    std::map<long long, fs::path> out;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        std::error_code ignored;
+        const std::optional<long long> number = darkroom::frame_number(entry->path());
+        if (!number || !entry->is_regular_file(ignored) || !darkroom::file_kind(entry->path())) continue;
+        if (const auto [found, is_new] = out.emplace(*number, entry->path()); !is_new)
+            return user_error(fmt::format("{}: {} and {} are both frame {}", printable(folder.string()),
+                                          printable(found->second.filename().string()),
+                                          printable(entry->path().filename().string()), *number));
+    }
+    if (error)
+        return user_error(fmt::format("{}: cannot list the folder: {}", printable(folder.string()), error.message()));
+    return out;
+}
+
+/// A picture of a display has been mapped by whoever made it.
+bool is_of_display(const FrameFile& frame) {
+    return frame.samples == darkroom::SampleKind::Integer8 || frame.samples == darkroom::SampleKind::Integer16;
+}
+
+Result<ShownCodes> codes_of(const fs::path& path) {
+    const Result<FrameFile> frame =
+        darkroom::read_frame(path, {.has_depth = false, .has_normals = false, .has_velocity = false});
+    if (!frame) return failure(frame.error());
+    if (!is_of_display(*frame)) return darkroom::codes_of_light(frame->color);
+    // Frames are light, whatever the file: sRGB's curve brings back the codes.
+    darkroom::Picture encoded = frame->color;
+    for (std::size_t i = 0; i < encoded.pixels.size(); ++i)
+        if (i % 4 != 3) encoded.pixels[i] = darkroom::srgb_encode(encoded.pixels[i]);
+    return darkroom::codes_of_display(encoded);
+}
+
+/// What a display shows, before it is encoded: luminance of Rec. 709.
+darkroom::Plane<1> luminance_of(const ShownCodes& codes, const Window& window) {
+    darkroom::Plane<1> out(window.width, window.height);
+    for (std::uint32_t y = 0; y < window.height; ++y)
+        for (std::uint32_t x = 0; x < window.width; ++x) {
+            const float* const code = codes.at(window.x + x, window.y + y);
+            *out.at(x, y) = 0.2126F * darkroom::srgb_decode(code[0] / 255) +
+                            0.7152F * darkroom::srgb_decode(code[1] / 255) +
+                            0.0722F * darkroom::srgb_decode(code[2] / 255);
+        }
+    return out;
+}
+
+class Judging {
+  public:
+    explicit Judging(const Options& options) : options_(options) {}
+
+    Result<Judgement> run() {
+        if (Result<> done = prepare(); !done) return failure(std::move(done));
+        for (const long long number : numbers_)
+            if (Result<> done = add(number); !done) return failure(std::move(done));
+        out_.verdict = judge_.verdict();
+        if (!options_.folder.empty())
+            if (Result<> done = write_report(); !done) return failure(std::move(done));
+        return std::move(out_);
+    }
+
+  private:
+    Result<> prepare() {
+        out_.truth = options_.truth;
+        out_.test = options_.test;
+        Result<CapturedTruth> truth = read_capture(options_.truth);
+        if (!truth) return failure(std::move(truth));
+        truth_ = std::move(*truth);
+        Result<std::map<long long, fs::path>> pictures = pictures_of(options_.test);
+        if (!pictures) return failure(std::move(pictures));
+        pictures_ = std::move(*pictures);
+        std::optional<darkroom::FrameSet> asked;
+        if (options_.frames) {
+            Result<darkroom::FrameSet> set = parse_frames(*options_.frames);
+            if (!set) return failure(std::move(set));
+            asked = std::move(*set);
+        }
+        for (const long long number : truth_.frames) {
+            if (asked && !asked->contains(number)) continue;
+            if (!pictures_.contains(number))
+                return user_error(fmt::format("{}: has no picture of frame {}, which the truth has",
+                                              printable(options_.test), number));
+            numbers_.push_back(number);
+        }
+        if (numbers_.empty())
+            return user_error(fmt::format("--frames {}: the truth has none of them", printable(*options_.frames)));
+        if (options_.edge) {
+            Result<Window> window = parse_window(*options_.edge);
+            if (!window) return failure(std::move(window));
+            edge_ = *window;
+        }
+        if (options_.folder.empty()) return {};
+        // A page of an older judgement goes first: what is there is whole, or is not there.
+        if (Result<> done = check_folder(options_.folder, MissingFolders::Made); !done) return done;
+        std::error_code error;
+        for (const char* name : {"index.html", "judge.json"}) fs::remove(fs::path(options_.folder) / name, error);
+        return {};
+    }
+
+    Result<> add(long long number) {
+        const fs::path truth_path = darkroom::numbered(truth_.folder / truth_.files, number);
+        const Result<FrameFile> truth = darkroom::read_frame(truth_path, {.has_normals = false});
+        if (!truth) return failure(truth.error());
+        const ShownCodes truth_codes = darkroom::codes_of_light(truth->color);
+        const fs::path& test_path = pictures_.at(number);
+        const Result<ShownCodes> test_codes = codes_of(test_path);
+        if (!test_codes) return failure(test_codes.error());
+        if (test_codes->width != truth_codes.width || test_codes->height != truth_codes.height)
+            return user_error(fmt::format("{}: is {}x{}, its truth is {}x{}", printable(test_path.string()),
+                                          test_codes->width, test_codes->height, truth_codes.width,
+                                          truth_codes.height));
+        const Result<darkroom::RegionMap> map = regions_.find(*truth, truth_codes);
+        if (!map) return user_error(fmt::format("{}: {}", printable(truth_path.string()), map.error().text));
+        if (Result<> done = judge_.add(number, truth_codes, *test_codes, *map); !done) return done;
+        out_.width = truth_codes.width;
+        out_.height = truth_codes.height;
+        if (Result<> done = measure_edge(number, truth_codes, *test_codes); !done) return done;
+        return options_.folder.empty() ? Result<>() : write_pictures(number, truth_codes, *test_codes);
+    }
+
+    /// Of the last frame, which has the longest history.
+    Result<> measure_edge(long long number, const ShownCodes& truth, const ShownCodes& test) {
+        if (!edge_ || number != numbers_.back()) return {};
+        if (std::uint64_t{edge_->x} + edge_->width > truth.width ||
+            std::uint64_t{edge_->y} + edge_->height > truth.height)
+            return user_error(fmt::format("--edge {}: reaches beyond the picture of {}x{}", printable(*options_.edge),
+                                          truth.width, truth.height));
+        const auto sharpness = [&](const ShownCodes& codes, const char* whose) -> Result<darkroom::EdgeSharpness> {
+            auto found = darkroom::edge_sharpness(luminance_of(codes, *edge_));
+            if (found) return found;
+            return user_error(
+                fmt::format("--edge {}: of the {}: {}", printable(*options_.edge), whose, found.error().text));
+        };
+        const auto of_truth = sharpness(truth, "truth");
+        if (!of_truth) return failure(of_truth.error());
+        const auto of_test = sharpness(test, "test");
+        if (!of_test) return failure(of_test.error());
+        out_.edge = Judgement::Edge{*of_truth, *of_test};
+        return {};
+    }
+
+    Result<> write_pictures(long long number, const ShownCodes& truth, const ShownCodes& test) const {
+        const darkroom::Picture a = picture_of(truth), b = picture_of(test);
+        const Result<darkroom::Comparison> compared = darkroom::compare(a, b);
+        if (!compared) return failure(compared.error());
+        for (const auto& [kind, picture] :
+             {std::pair("truth", &a), std::pair("test", &b), std::pair("error", &compared->flip_map)})
+            if (Result<> done =
+                    darkroom::write_picture(fs::path(options_.folder) / picture_name(kind, number), *picture);
+                !done)
+                return done;
+        return {};
+    }
+
+    Result<> write_report() const {
+        const auto write = [&](const char* name, const std::string& text) {
+            return darkroom::write_file(fs::path(options_.folder) / name, std::as_bytes(std::span(text)));
+        };
+        if (Result<> done = write("judge.json", json_of(out_).dump(2) + "\n"); !done) return done;
+        return write("index.html", page_of(out_));
+    }
+
+    const Options& options_;
+    CapturedTruth truth_;
+    std::map<long long, fs::path> pictures_;
+    std::vector<long long> numbers_;
+    std::optional<Window> edge_;
+    darkroom::RegionFinder regions_;
+    darkroom::Judge judge_;
+    Judgement out_;
+};
+
+int run(const Options& options) {
+    const Result<Judgement> judgement = Judging(options).run();
+    if (!judgement) return fail(judgement.error());
+    if (options.is_json) {
+        fmt::print("{}\n", json_of(*judgement).dump(2));
+        return exit_ok;
+    }
+    const std::string text = text_of(*judgement);
+    answer(text.substr(0, text.size() - 1));
+    return exit_ok;
+}
+
+}  // namespace
+
+static Command add_judge(CommandFlags program) {
+    const CommandFlags command =
+        program.add_command("judge", "Says how far the pictures of a temporal filter are from the truth of a capture");
+    command.examples(
+        "darkroom judge --truth captured --test captured/1x\n"
+        "darkroom judge --truth captured --test captured/1x -o judgement\n"
+        "darkroom judge --truth captured --test captured/1x --frames 1 --json");
+    const auto options = std::make_shared<Options>();
+    command.add_option("--truth", options->truth, "A folder of `darkroom capture`").type_name("DIR").required();
+    command
+        .add_option("--test", options->test,
+                    "Pictures with the same numbers: linear light (.exr, .hdr), or sRGB codes of c / (1 + max c)")
+        .type_name("DIR")
+        .required();
+    command.add_option("-o,--output,--out", options->folder, "A folder for judge.json and a page with the pictures")
+        .type_name("DIR");
+    command.add_option("--frames", options->frames, "Frames of the truth that count; default: all").type_name("A-B");
+    command.add_option("--edge", options->edge, "Place of a slanted edge whose sharpness is measured")
+        .type_name("X,Y,WxH");
+    command.add_flag("--json", options->is_json, "For programs");
+    return {command, [options] { return run(*options); }};
+}
+
+CommandRow judge_command() {
+    return {.names = {"judge"}, .place = 230, .is_of_lab = true, .add = [](const CommandHost& host) {
+                return std::vector{add_judge(host.program)};
+            }};
+}
+
+}  // namespace app

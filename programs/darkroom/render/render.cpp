@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/text/param_text.hpp"
+#include "develop/developer.hpp"
+#include "programs/darkroom/commands.hpp"
+#include "programs/darkroom/run/dim_bloom.hpp"
+#include "programs/darkroom/run/frames.hpp"
+#include "programs/darkroom/run/jitter.hpp"
+#include "programs/darkroom/run/motion.hpp"
+#include "programs/darkroom/run/outputs.hpp"
+#include "programs/darkroom/run/report.hpp"
+#include "programs/darkroom/run/sequence_run.hpp"
+#include "render_flags.hpp"
+#include "scene/assets.hpp"
+#include "scene/scene.hpp"
+
+namespace app {
+
+namespace {
+
+namespace render = darkroom::render;
+namespace scene = darkroom::scene;
+using darkroom::DevelopedPicture;
+using darkroom::DevelopTarget;
+using darkroom::Result;
+
+/// How a picture comes about.
+enum class Way {
+    Developed,  ///< linear light through the look
+    Display,    ///< by the scene's own shaders
+    Linear,     ///< linear light as it is, into a float file
+};
+
+std::string shown(const std::filesystem::path& path) { return darkroom::printable(path.string()); }
+
+// The effects that bring light into the range of a display. None is known by name.
+bool switch_tone_mapping_off(darkroom::Look& look) {
+    bool was_there = false;
+    for (darkroom::LookEntry& entry : look.entries) {
+        const darkroom::EffectInfo& effect = *entry.effect;
+        if (effect.makes == nullptr || !effect.accepts.contains(darkroom::Domain::SceneLinear)) continue;
+        if (effect.makes({}, entry.words.data()).domain != darkroom::Domain::DisplayLinear) continue;
+        entry.state.enabled = false;
+        was_there = true;
+    }
+    return was_there;
+}
+
+// Effects that the lens makes superfluous: those that are told where it is focused. None is known by name.
+void switch_lens_blur_off(darkroom::Look& look) {
+    for (darkroom::LookEntry& entry : look.entries) {
+        const auto& rows = entry.effect->parameters.rows;
+        if (!entry.state.enabled.on ||
+            std::ranges::find(rows, "focus_distance", &darkroom::ParamInfo::name) == rows.end())
+            continue;
+        entry.state.enabled = false;
+        tell(fmt::format("--aperture: the lens blurs, {} is off",
+                         entry.name.empty() ? std::string(entry.effect->name) : darkroom::printable(entry.name)));
+    }
+}
+
+class Render {
+  public:
+    explicit Render(const RenderFlags& flags) : flags_(flags) {}
+
+    Result<> run() {
+        if (Result<> done = read(); !done) return done;
+        if (job_.shots.empty()) return {};  // all are there
+        if (Result<> done = make(); !done) return done;
+        const auto pictures = std::ranges::count(job_.shots, true, &Shot::is_written);
+        items_.resize(job_.shots.size());
+        const Result<> done = run_sequence({.steps = items_.size(),
+                                            .pictures = static_cast<std::size_t>(pictures),
+                                            .jobs = job_.jobs,
+                                            .keeps_going = flags_.run.keeps_going,
+                                            .has_timings = flags_.run.has_timings},
+                                           {.decode = [this](std::size_t i) { return pose(i); },
+                                            .begin = [this](std::size_t i) { return render(i); },
+                                            .finish = [](std::size_t) { return Result<>(); },
+                                            .encode = [this](std::size_t i) { return encode(i); },
+                                            .deliver = [this](std::size_t i) { return deliver(i); },
+                                            .made = [this](std::size_t i) { return made(job_.shots[i]); },
+                                            .release = [this](std::size_t i) { items_[i] = {}; }});
+        if (composer_ && flags_.run.has_timings && done) pass_times_.print();
+        return done;
+    }
+
+    Result<> check() {
+        if (Result<> done = read_flags(); !done) return done;
+        // Its prefabs are read with it; what a scene only warns of, each run tells.
+        if (!scene::is_model_path(flags_.scene)) {
+            Result<scene::Scene> scene = read_scene();
+            if (!scene) return failure(std::move(scene));
+            scene_ = std::move(*scene);
+        }
+        return read_look();
+    }
+
+    [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
+
+  private:
+    /// What a shot has while it is under way.
+    struct Item {
+        std::optional<scene::Snapshot> snapshot;
+        DevelopedPicture picture;
+        std::vector<std::byte> packed;  ///< of a stream: what goes out
+        VkExtent2D extent{};            ///< of that
+        std::optional<darkroom::FrameFile> frame;
+    };
+
+    Result<> read_flags() {
+        Result<RenderJob> job = flags_.job();
+        if (!job) return failure(std::move(job));
+        job_ = std::move(*job);
+        if (job_.stream) stream_.emplace(*job_.stream);
+        tell_of_half_range(job_.write);
+        const Result<darkroom::KernelStage> stage = flags_.device.stage();
+        if (!stage) return failure(stage.error());
+        develop_ = {.target = job_.target, .color = job_.color, .kernels = *stage, .fuse = flags_.device.is_fused()};
+        return {};
+    }
+
+    Result<> read_look() {
+        flags_.add_lens_of(scene_.camera, job_.desc.lens);
+        // Models hold no look.
+        Result<darkroom::Look> look =
+            flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene, lens_of(scene_.camera));
+        if (!look) return failure(std::move(look));
+        look_ = std::move(*look);
+        if (Result<> done = check_ui_files(look_); !done) return done;
+        suit(look_, job_.target, job_.write);
+        if (!job_.stream)
+            if (Result<> done = check_codes(look_, job_.target, job_.write); !done) return done;
+        if (!flags_.look.events.empty()) {
+            Result<Timeline> timeline = Timeline::read(flags_.look.events, look_);
+            if (!timeline) return failure(std::move(timeline));
+            timeline_ = std::move(*timeline);
+        }
+        motion_ = Motion(look_, timeline_, [this](std::size_t frame) { return job_.time_of(frame); });
+        choose_way();
+        if (flags_.run.has_timings && way_ != Way::Developed)
+            return darkroom::user_error("--timings: no effect runs, so there is nothing to time");
+        if (job_.render_scale != 1 && way_ != Way::Developed)
+            return darkroom::user_error(
+                "--render-scale: no effect runs that could enlarge the picture; --size sets its size");
+        if (job_.color && way_ != Way::Developed)
+            return darkroom::user_error("--output-space: no effect runs that could encode the picture");
+        if (!flags_.has_lens()) return {};
+        if (way_ == Way::Display)
+            return darkroom::user_error(
+                "--aperture: the scene's own shaders draw no blur; a look does, or linear light in an .exr");
+        switch_lens_blur_off(look_);
+        return {};
+    }
+
+    Result<scene::Scene> read_scene(std::vector<std::string>* warnings = nullptr) const {
+        return scene::read_scene(
+            flags_.scene,
+            {.is_strict = flags_.look.is_strict(), .warnings = warnings, .named_files = flags_.drawn.named_files()});
+    }
+
+    // Everything that needs no device: a slip is told before one is made.
+    Result<> read() {
+        if (Result<> done = read_flags(); !done) return done;
+        std::vector<std::string> warnings;
+        Result<scene::Scene> scene = read_scene(&warnings);
+        for (const std::string& warning : warnings) warn(warning);
+        if (!scene) return failure(std::move(scene));
+        scene_ = std::move(*scene);
+        if (!flags_.has_time()) {
+            Shot& shot = job_.shots.front();
+            shot.time = scene_.time;
+            shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
+        }
+        if (Result<> done = read_look(); !done) return done;
+        const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
+        if (job_.orbit.field_of_view && is_orthographic) warn("--fov: ignored, the scene's camera is orthographic");
+        assets_ = scene::load_assets(scene_);
+        if (Result<> done = check_model(); !done) return done;
+        if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
+        for (const std::string& warning : assets_.warnings) warn(warning);
+        std::vector<std::filesystem::path> inputs = assets_.files;
+        std::ranges::move(flags_.look.input_files(), std::back_inserter(inputs));
+        std::ranges::move(ui_files(look_), std::back_inserter(inputs));
+        const FileSet files(inputs);
+        for (const Shot& shot : job_.shots)
+            for (const std::filesystem::path& path : {shot.picture, shot.frame})
+                if (!path.empty() && path != stream_name)
+                    if (Result<> done = check_output(path, files); !done) return done;
+        const std::size_t asked_for = job_.shots.size();
+        const std::size_t skipped = std::erase_if(job_.shots, [&](const Shot& shot) {
+            return flags_.run.is_skipped(shot.picture) && (shot.frame.empty() || flags_.run.is_skipped(shot.frame));
+        });
+        RunFlags::tell_of_skipped(skipped, asked_for);
+        if (way_ == Way::Developed)
+            if (Result<> done = add_pre_roll(); !done) return done;
+        tell(fmt::format("Loaded scene {}\nEntities: {}", darkroom::printable(scene_.name), scene_.entities.size()));
+        return {};
+    }
+
+    /// The shots before each that histories need and that are not made anyway.
+    Result<> add_pre_roll() {
+        if (job_.shots.empty()) return {};
+        const double delta_time = job_.shots.front().delta_time;
+        const Result<std::uint32_t> of_look = add_needs(look_, delta_time, timeline_, needs_);
+        if (!of_look) return failure(of_look.error());
+        const Result<std::uint32_t> of_motion = motion_.pre_roll(look_, delta_time, job_.shots.back().number);
+        if (!of_motion) return failure(of_motion.error());
+        const std::uint32_t pre_roll = std::max(*of_look, *of_motion);
+        std::vector<Shot> all;
+        for (const Shot& shot : job_.shots) {
+            std::uint64_t first = shot.number - std::min<std::uint64_t>(shot.number, pre_roll);
+            if (!all.empty()) first = std::max(first, all.back().number + 1);
+            for (std::uint64_t number = first; number < shot.number; ++number) {
+                Shot& before = all.emplace_back(shot);
+                before.number = number;
+                before.time = job_.time_of(number);
+                before.previous_time = std::max(0.0, before.time - shot.delta_time);
+                before.frame.clear();
+                before.is_written = false;
+            }
+            all.push_back(shot);
+        }
+        job_.shots = std::move(all);
+        return {};
+    }
+
+    // In a scene a broken model is a gap; alone there is nothing left, and its error counts.
+    [[nodiscard]] Result<> check_model() const {
+        if (!scene::is_model_path(flags_.scene)) return {};
+        if (!assets_.model_errors.empty()) return failure(assets_.model_errors.front());
+        const auto draws = [](const scene::Model& model) {
+            return std::ranges::any_of(model.nodes, [&](const scene::Node& node) {
+                return node.mesh < model.meshes.size() && !model.meshes[node.mesh].primitives.empty();
+            });
+        };
+        if (std::ranges::any_of(assets_.models, draws)) return {};
+        return darkroom::user_error(
+            fmt::format("{}: the model has no triangles in its scene, nothing is drawn", shown(flags_.scene)));
+    }
+
+    void choose_way() {
+        const bool is_debug = job_.desc.draw.debug != render::DebugView::None;
+        const bool is_off = flags_.look.is_off() || !look_.is_enabled;
+        const bool is_light = develop_.target == DevelopTarget::SceneLinear;
+        // The interface is laid over an encoded picture by the stack.
+        if (!is_debug && (!is_off || (look_.ui && !is_light)))
+            way_ = Way::Developed;
+        else
+            way_ = !is_debug && is_light ? Way::Linear : Way::Display;
+        if (way_ == Way::Developed && !flags_.drawn.is_tone_mapped() && !switch_tone_mapping_off(look_))
+            warn("--no-tonemapping: the look has no tone mapping");
+    }
+
+    Result<> make() {
+        Result<darkroom::Device> device = flags_.device.create();
+        if (!device) return failure(std::move(device));
+        device_ = std::make_unique<darkroom::Device>(std::move(*device));
+        const VkExtent2D extent = job_.desc.extent;
+        if (Result<> done = darkroom::check_extent(*device_, extent); !done) return done;
+        render::RenderDesc desc = job_.desc;
+        desc.draw.has_grid = desc.draw.has_grid && scene_.has_grid;
+        const bool has_frames = !job_.shots.back().frame.empty();
+        if (way_ == Way::Display) {
+            desc.output = render::Output::Display;
+            desc.draw.exposure = darkroom::exposure_of(look_);
+            // Its own shaders encode it, so the rasteriser smooths its edges.
+            if (desc.draw.debug == render::DebugView::None && !flags_.drawn.has_msaa()) desc.samples = usual_msaa;
+            // What the file holds more of than eight bits: half floats have eleven, and no range to leave.
+            if (develop_.target != DevelopTarget::Encoded8) desc.display_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+            if (Result<> done = make_renderer(desc, display_); !done) return done;
+        }
+        if (way_ != Way::Display || has_frames) {
+            const Result<std::uint32_t> samples = flags_.samples(scene_.samples);
+            if (!samples) return failure(samples.error());
+            is_jittered_ = job_.is_sequence && way_ == Way::Developed && gathers_frames(look_);
+            // Frames that are gathered have their other places in the frames before.
+            desc.positions = is_jittered_ && !flags_.has_samples() && !flags_.has_lens() ? 1 : *samples;
+            desc.has_transparency = desc.positions == 1 && desc.samples == 1 && needs_.has_transparency;
+            desc.extent = scaled(extent, job_.render_scale);
+            scale_ = static_cast<float>(extent.height) / static_cast<float>(desc.extent.height);
+            desc.draw.mip_bias = way_ == Way::Developed ? darkroom::Composer::mip_bias(scale_) : 0;
+            desc.output = render::Output::Hdr;
+            desc.draw.debug = render::DebugView::None;
+            if (Result<> done = make_renderer(desc, hdr_); !done) return done;
+        }
+        if (way_ != Way::Developed) return {};
+        if (job_.render_scale != 1) develop_.target_extent = extent;
+        composer_ = std::make_unique<darkroom::Composer>(
+            *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.run.has_timings});
+        developer_ = std::make_unique<darkroom::Developer>(*device_, develop_);
+        return darkroom::apply(look_, *composer_, {.keeps = timeline_.entries()});
+    }
+
+    Result<> make_renderer(const render::RenderDesc& desc, std::optional<render::Renderer>& to) {
+        Result<render::Renderer> made =
+            display_ ? display_->sharing(desc) : render::Renderer::create(*device_, scene_, assets_, desc);
+        if (!made) return failure(std::move(made));
+        to.emplace(std::move(*made));
+        return {};
+    }
+
+    Result<> pose(std::size_t i) {
+        const auto [width, height] = job_.desc.extent;
+        const Shot& shot = job_.shots[i];
+        items_[i].snapshot = scene::snapshot(scene_, assets_,
+                                             {.time = shot.time,
+                                              .previous_time = shot.previous_time,
+                                              .aspect = static_cast<float>(width) / static_cast<float>(height),
+                                              .seed = job_.seed,
+                                              .orbit = job_.orbit});
+        return {};
+    }
+
+    Result<> render(std::size_t i) {
+        Item& item = items_[i];
+        if (i == 0)
+            for (const std::string& warning : item.snapshot->warnings) warn(warning);
+        if (display_) {
+            if (Result<> done = display_->prepare(*item.snapshot); !done) return done;
+            Result<DevelopedPicture> read = darkroom::read_picture(*device_, display_->picture(), recorder(*display_));
+            if (!read) return failure(std::move(read));
+            item.picture = std::move(*read);
+        }
+        if (hdr_)
+            if (Result<> done = render_light(i); !done) return done;
+        item.snapshot.reset();
+        return {};
+    }
+
+    Result<> encode(std::size_t i) {
+        const Shot& shot = job_.shots[i];
+        if (!shot.is_written) return {};
+        Item& item = items_[i];
+        if (item.frame)
+            if (Result<> done = darkroom::write_frame(shot.frame, *item.frame, job_.write.max_threads); !done)
+                return done;
+        if (!stream_) return write(shot.picture, std::move(item.picture), job_.write);
+        item.extent = item.picture.extent;
+        item.packed = stream_->pack(std::exchange(item.picture, {}));
+        return {};
+    }
+
+    Result<> deliver(std::size_t i) {
+        if (!stream_ || !job_.shots[i].is_written) return {};
+        return stream_->write(items_[i].packed, items_[i].extent, shown(flags_.scene));
+    }
+
+    [[nodiscard]] std::optional<Made> made(const Shot& shot) const {
+        if (!shot.is_written) return std::nullopt;
+        const auto [width, height] = job_.desc.extent;
+        return Made{.from = flags_.scene, .to = shot.picture.string(), .width = width, .height = height};
+    }
+
+    /// The linear frame: through the look, or as it is, and into a file of its own.
+    Result<> render_light(std::size_t i) {
+        const Shot& shot = job_.shots[i];
+        Item& item = items_[i];
+        if (Result<> done =
+                hdr_->prepare(*item.snapshot, is_jittered_ ? jitter_of(shot.number, scale_) : render::FrameJitter{});
+            !done)
+            return done;
+        darkroom::DeviceFrame input{.frame = hdr_->frame(),
+                                    .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                                    .layer_usage = hdr_->layer_usage(),
+                                    .record_before = recorder(*hdr_)};
+        input.frame.camera = as_stored(input.frame.camera);
+        input.frame.time = shot.time;
+        input.frame.delta_time = shot.delta_time;
+        input.frame.frame_index = shot.number;
+        input.frame.camera.is_cut = i > 0 && job_.shots[i - 1].number + 1 != shot.number;
+        darkroom::FrameLayers layers;
+        const bool has_frame = !shot.frame.empty();
+        if (way_ == Way::Developed) {
+            if (Result<> done = motion_.advance(*composer_, shot.number, shot.time); !done) return done;
+            const auto ui = motion_.picture(job_.desc.extent);
+            if (!ui) return failure(ui.error());
+            input.ui = **ui;
+            Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
+            if (!made) return failure(std::move(made));
+            if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
+            if (i == 0) tell_of_dim_bloom(*device_, *composer_, look_, develop_, input);
+            item.picture = std::move(*made);
+            if (flags_.run.has_timings) pass_times_.add(composer_->times().passes);
+        } else {
+            Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);
+            if (!read) return failure(std::move(read));
+            layers = std::move(*read);
+            if (way_ == Way::Linear) item.picture = {.extent = layers.extent, .pixels = layers.color};
+        }
+        if (has_frame) item.frame = frame_file(input.frame, std::move(layers));
+        return {};
+    }
+
+    static darkroom::RecordBefore recorder(render::Renderer& renderer) {
+        return [&renderer](VkCommandBuffer commands) { return renderer.record(commands); };
+    }
+
+    const RenderFlags& flags_;
+    RenderJob job_;
+    darkroom::DevelopDesc develop_;
+    scene::Scene scene_;
+    scene::Assets assets_;
+    darkroom::Look look_;
+    Timeline timeline_;
+    Way way_ = Way::Developed;
+    std::unique_ptr<darkroom::Device> device_;
+    std::optional<render::Renderer> hdr_, display_;
+    darkroom::FrameOptions needs_{.has_transparency = false};
+    bool is_jittered_ = false;
+    float scale_ = 1;  ///< lines of the picture to those of the frame
+    std::unique_ptr<darkroom::Composer> composer_;
+    Motion motion_;  ///< moves the composer, so it goes first
+    std::unique_ptr<darkroom::Developer> developer_;
+    std::vector<Item> items_;
+    std::optional<PictureStream> stream_;
+    PassTimes pass_times_;
+};
+
+int run(const RenderFlags& flags) {
+    Render render(flags);
+    const Result<> done = render.run();
+    return render.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+}  // namespace
+
+static Command add_render(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command = program.add_command("render", "Renders a scene and post-processes it");
+    command.examples(
+        "darkroom render scene.toml --size 640x360 -o picture.png\n"
+        "darkroom render scene.toml --frames 0-1 --fps 24 --size 64x36 -o 'out.####.png'\n"
+        "darkroom render scene.toml --size 64x36 --yaw 200 --save-frame frame.exr -o picture.png");
+    const auto flags = std::make_shared<RenderFlags>();
+    flags->add_to(command, named);
+    return {command, [flags] { return run(*flags); }, [flags] { return Render(*flags).check(); }};
+}
+
+CommandRow render_command() {
+    return {.names = {"render"}, .place = 10, .add = [](const CommandHost& host) {
+                return std::vector{add_render(host.program, host.named)};
+            }};
+}
+
+}  // namespace app
