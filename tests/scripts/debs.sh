@@ -27,6 +27,7 @@ files >"$work/before"
 apt install "$folder"/*.deb
 cd "$work"
 darkroom --version
+darkroom devices
 quietly darkroom develop /usr/share/darkroom/samples/window.exr --look /usr/share/darkroom/looks/film.toml -o picture.png
 [[ -s picture.png ]] || fail "darkroom makes no picture"
 # The parts that are loaded or started on first use: other files than OpenEXR, and what draws documents.
@@ -38,14 +39,15 @@ for host in package package_c package_c_static script hud; do
     [[ -x hosts/$host ]] || fail "the host $host was not built"
     quietly "hosts/$host"
 done
-c++ -std=c++20 -O0 "$tree/tests/package/main.cpp" $(pkg-config --cflags --libs darkroom-looks) -o by_pkg_config
-quietly ./by_pkg_config
+c++ -std=c++20 -O0 "$tree/tests/package/main.cpp" $(pkg-config --cflags --libs darkroom-looks) -o looks_by_pkg_config
+cc -std=c99 "$tree/tests/package/main.c" $(pkg-config --cflags --libs darkroom) -o c_by_pkg_config
+for host in ./*_by_pkg_config; do quietly "$host"; done
 python3 -c '
 import numpy, darkroom
 frame = numpy.full((9, 16, 3), 0.18, numpy.float32)
 picture = darkroom.develop(frame)
 assert picture.shape[:2] == (9, 16) and picture.max() > 0'
-echo "debs: $(ls "$folder"/*.deb | wc -l) packages are installed, the program runs, $(ls "$work"/hosts/*.dkb | wc -l) kernels are baked, 5 hosts run"
+echo "debs: $(ls "$folder"/*.deb | wc -l) packages are installed, the program runs, $(ls "$work"/hosts/*.dkb | wc -l) kernels are baked, 7 hosts run"
 
 apt purge $(for deb in "$folder"/*.deb; do dpkg-deb -f "$deb" Package; done)
 apt autoremove --purge
