@@ -94,7 +94,7 @@ void print_children(const CommandText& command) {
         else
             print_row(child->get_name(), child->get_description());
     if (!lab.empty())
-        fmt::print("\nFor whoever embeds or changes Darkroom, by `darkroom help COMMAND`:\n  {}\n",
+        fmt::print("\nFor packages, hosts and who changes Darkroom; `darkroom help COMMAND` tells of each:\n  {}\n",
                    fmt::join(lab, " "));
 }
 
@@ -197,7 +197,9 @@ std::optional<int> answer_help(const CLI::App& program, std::span<char* const> a
 
 CommandRow help_command() {
     return {.names = {"help", "completion", "man"}, .place = 130, .add = [](const CommandHost& host) {
-                return std::vector{add_help(host.program), add_completion(host.program), add_man(host.program)};
+                std::vector out{add_help(host.program), add_completion(host.program), add_man(host.program)};
+                for (std::size_t i = 1; i < out.size(); ++i) out[i].flags.put_in_lab();
+                return out;
             }};
 }
 

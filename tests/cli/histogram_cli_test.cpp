@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// `darkroom histogram`: a frame whose light was chosen, told back.
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "cli_support.hpp"
+#include "image/frame/frame_file.hpp"
+
+namespace darkroom {
+namespace {
+
+using nlohmann::json;
+using test::Outcome;
+
+class CliHistogram : public test::CliFixture {
+  protected:
+    /// Of 100 pixels 40 of middle grey, 30 two stops above, 20 black, 9 four and a half stops below, one infinite.
+    void make_files() override {
+        FrameFile frame;
+        frame.color = Picture(10, 10);
+        for (std::uint32_t i = 0; i < 100; ++i) {
+            const float light = i < 40   ? 0.18001f
+                                : i < 70 ? 0.72001f
+                                : i < 90 ? 0.0f
+                                : i < 99 ? 0.18f * std::exp2(-4.5f)
+                                         : std::numeric_limits<float>::infinity();
+            for (std::uint32_t c = 0; c < 3; ++c) frame.color.at(i % 10, i / 10)[c] = light;
+        }
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+    }
+};
+
+TEST_F(CliHistogram, TellsTheSharesOfStopsAndWhatIsNoLight) {
+    const Outcome text = run({"histogram", path("frame.exr")});
+    EXPECT_EQ(text.code, 0) << text.err;
+    for (const char* const line :
+         {"   +2  30.00 % ##############################\n", "   +0  40.00 % ####", "   -5   9.00 % #########\n",
+          "20.00 % black or below", "1.00 % NaN or infinite", "50 % +0.0", "95 % +2.0"})
+        EXPECT_NE(text.out.find(line), std::string::npos) << line << text.out;
+    const Outcome document = run({"histogram", path("frame.exr"), "--json"});
+    const json out = json::parse(document.out);
+    EXPECT_EQ(out.at("black"), 20);
+    EXPECT_EQ(out.at("not_numbers"), 1);
+    EXPECT_EQ(out.at("stops").size(), 8u);
+    EXPECT_EQ(out.at("stops").front(), (json{{"from", -5}, {"pixels", 9}}));
+    EXPECT_NEAR(out.at("brightest").get<double>(), 0.72, 1e-3);
+    EXPECT_EQ(json::parse(run({"histogram", path("frame.exr"), path("frame.exr"), "--json"}).out).size(), 2u);
+}
+
+TEST_F(CliHistogram, NamesAFileThatIsNone) {
+    const Outcome out = run({"histogram", path("none.exr")});
+    EXPECT_EQ(out.code, 1);
+    EXPECT_EQ(std::ranges::count(out.err, '\n'), 1) << out.err;
+    EXPECT_NE(out.err.find("none.exr"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace darkroom
