@@ -15,6 +15,8 @@
 
 namespace app {
 
+CommandRow info_command();
+
 namespace {
 
 using darkroom::printable;
@@ -111,7 +113,8 @@ static std::vector<Command> add_lut(CommandFlags program, std::span<const darkro
         "darkroom lut info film.cube\n"
         "darkroom lut convert film.cube -o copy.cube\n"
         "darkroom lut export my.toml -o my.cube");
-    const Command info = add_info(lut), convert = add_convert(lut), exported = add_export(lut, named);
+    const Command info = info_command().add({.program = lut}).front(), convert = add_convert(lut),
+                  exported = add_export(lut, named);
     info.flags.examples(
         "darkroom lut info film.cube\n"
         "darkroom lut info film.cube bright.cube\n"
