@@ -234,7 +234,8 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
     auto made = state_->make_entry(info, parameters, old.desc);
     made->id = old.id;
     std::shared_ptr<plan::Entry>& place = state_->stack[state_->index_of(handle)];
-    made->replaced = place;
+    // One that no plan holds goes; the one before it may still be in a picture.
+    made->replaced = place.use_count() == 1 ? place->replaced : place;
     place = std::move(made);
     return {};
 } catch (...) {
@@ -440,7 +441,9 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
 
 void Composer::drop_overrides(std::string_view owner) {
     for (const auto& entry : state_->stack)
-        std::erase_if(entry->overrides, [&](const auto& o) { return o.owner == owner; });
+        State::for_all_of(*entry, [&](plan::Entry& one) {
+            std::erase_if(one.overrides, [&](const auto& o) { return o.owner == owner; });
+        });
 }
 
 std::uint32_t Composer::pre_roll(double delta_time) const try {

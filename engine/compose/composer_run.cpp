@@ -133,14 +133,23 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
 
 void Composer::State::take_ready(const Frame& frame) {
     std::unique_ptr<compose::Chain> newer;
-    {
-        const std::unique_lock lock(pending_mutex, std::try_to_lock);
-        if (!lock || !ready || (asks_first && !is_told)) return;
-        // Formats and extents change on both sides, and the host's images may come later than the plan.
-        if (chain && !ready->fits(frame, chain->compiled_for()) && chain->fits(frame, chain->compiled_for())) return;
+    // Formats and extents change on both sides, and the host's images may come later than the plan.
+    const auto suits = [&](const std::unique_ptr<compose::Chain>& made) {
+        return made &&
+               (!chain || made->fits(frame, chain->compiled_for()) || !chain->fits(frame, chain->compiled_for()));
+    };
+    if (asks_first) {
+        if (suits(told)) newer = std::move(told);
+    } else if (const std::unique_lock lock(pending_mutex, std::try_to_lock); lock && suits(ready)) {
         newer = std::move(ready);
     }
-    take(std::move(newer));
+    if (newer) take(std::move(newer));
+}
+
+void Composer::State::retire(std::unique_ptr<compose::Chain> old, std::uint32_t recordings) {
+    old->recordings_left = recordings;
+    old->next_retired = std::exchange(retired, old.get());
+    static_cast<void>(old.release());
 }
 
 void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
@@ -148,11 +157,7 @@ void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
     const std::uint32_t recordings = std::max(chain ? chain->slots() : 0u, newer->slots());
     for (compose::Chain* old = retired; old != nullptr; old = old->next_retired)
         old->recordings_left = std::max(old->recordings_left, recordings);
-    if (chain) {
-        chain->recordings_left = recordings;
-        chain->next_retired = std::exchange(retired, chain.get());
-        static_cast<void>(chain.release());
-    }
+    if (chain) retire(std::move(chain), recordings);
     chain = std::move(newer);
 }
 
@@ -185,6 +190,7 @@ std::unique_lock<std::mutex> Composer::State::stop_compiling() {
         const std::scoped_lock guard(pending_mutex);
         ready.reset();
     }
+    told.reset();
     worker->clean_up();
     return lock;
 }
@@ -223,13 +229,13 @@ Result<Plan> Composer::compile(const CompileDesc& desc) try { return state_->com
 
 std::optional<CompileDesc> Composer::State::last_desc() const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready) && later) return later->desc;
+    if ((is_compiling || ready || told) && later) return later->desc;
     return chain ? std::optional(chain->compiled_for()) : std::nullopt;
 }
 
 bool Composer::State::is_mixable(const plan::Entry& entry) const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready) && later && std::ranges::count(later->unmixed, entry.id) > 0) return false;
+    if ((is_compiling || ready || told) && later && std::ranges::count(later->unmixed, entry.id) > 0) return false;
     const auto place = chain ? chain->index_of(entry.id) : std::nullopt;
     return !place || chain->program()->program.is_mixable[*place];
 }
@@ -258,7 +264,6 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
         return;
     }
     older = std::exchange(ready, std::move(*made));
-    is_told = false;
 }
 
 Result<> Composer::compile_later(const CompileDesc& desc) try {
@@ -298,23 +303,34 @@ Result<> Composer::compile_later(const CompileDesc& desc) try {
 
 PendingCompile Composer::pending() const try {
     const std::scoped_lock lock(state_->pending_mutex);
-    return {.is_pending = state_->is_compiling || state_->ready,
-            .is_ready = state_->ready != nullptr,
+    return {.is_pending = state_->is_compiling || state_->ready || state_->told,
+            .is_ready = state_->ready || state_->told,
             .error = state_->pending_error};
 } catch (...) {
     return {.is_pending = false, .error = caught("pending").value()};
 }
 
-const Plan* Composer::current_plan() const try { return state_->chain ? &state_->chain->plan() : nullptr; } catch (...) {
+const Plan* Composer::current_plan() const try {
+    return state_->chain ? &state_->chain->plan() : nullptr;
+} catch (...) {
     // There is no memory to tell it in.
     return nullptr;
 }
 
 const Plan* Composer::coming_plan() {
-    const std::scoped_lock lock(state_->pending_mutex);
-    state_->asks_first = true;
-    state_->is_told = state_->ready != nullptr;
-    return state_->ready ? &state_->ready->plan() : nullptr;
+    State& state = *state_;
+    state.asks_first = true;
+    std::unique_ptr<compose::Chain> newer;
+    {
+        const std::scoped_lock lock(state.pending_mutex);
+        newer = std::move(state.ready);
+    }
+    if (newer) {
+        // The host may still read what it was told before.
+        if (state.told) state.retire(std::move(state.told), 0);
+        state.told = std::move(newer);
+    }
+    return state.told ? &state.told->plan() : nullptr;
 }
 
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
@@ -326,7 +342,9 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
     state.last = plan::moment_of(frame.time, frame.camera);
     if (state.is_any_waiting) state.start_pulses(frame.time);
     auto ok = state.chain->record(commands, frame);
-    for (compose::Chain* old = state.retired; ok && old != nullptr; old = old->next_retired) --old->recordings_left;
+    // One that the worker had no room for has none left already.
+    for (compose::Chain* old = state.retired; ok && old != nullptr; old = old->next_retired)
+        if (old->recordings_left > 0) --old->recordings_left;
     state.record_microseconds =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     return ok;
@@ -368,6 +386,7 @@ Result<Plan> Composer::rebind(const Device& device) try {
     newer->resources = state_->resources;
     newer->last = state_->last;
     newer->is_any_waiting = state_->is_any_waiting;
+    newer->asks_first = state_->asks_first;
     auto plan = newer->compile(*desc);
     if (plan) state_ = std::move(newer);
     return plan;

@@ -66,6 +66,8 @@ struct Composer::State {
     /// The plan that is ready, if this frame is for it. Never waits.
     void take_ready(const Frame& frame);
     void take(std::unique_ptr<compose::Chain> newer);
+    /// Until so many more recordings are made.
+    void retire(std::unique_ptr<compose::Chain> old, std::uint32_t recordings);
     void put_away_retired();
 
     std::shared_ptr<gpu::Context> context;
@@ -75,6 +77,8 @@ struct Composer::State {
 
     compose::Clock clock;
     std::unique_ptr<compose::Chain> chain;
+    std::unique_ptr<compose::Chain> told;  ///< of a host that asks first: what coming_plan() showed it, for record()
+    bool asks_first = false;
     compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned
     double record_microseconds = 0;
     plan::Moment last;            ///< of the last record
@@ -84,7 +88,7 @@ struct Composer::State {
     graph::HistoryPool histories;
     std::shared_ptr<compose::StackProgram> program;  ///< of the last compile
 
-    mutable std::mutex pending_mutex;  ///< guards the next six; record() tries it and never waits
+    mutable std::mutex pending_mutex;  ///< guards the next five; record() tries it and never waits
     std::uint64_t requests = 0;
     /// What the last compile_later() was asked for.
     struct Later {
@@ -95,8 +99,6 @@ struct Composer::State {
     bool is_compiling = false;
     std::optional<Error> pending_error;
     std::unique_ptr<compose::Chain> ready;  ///< for record() to take
-    bool is_told = false;                   ///< has coming_plan() shown it?
-    bool asks_first = false;                ///< does the host ask for it?
 
     std::unique_ptr<compose::Worker> worker;
 };

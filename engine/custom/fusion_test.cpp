@@ -59,9 +59,12 @@ TEST(ComposeCustomFusion, HelpersOfOneNameAreEachFilesOwn) {
             "const float factor = {2:.3f}, unused[2] = float[2](factor, 1.0);\n"
             "struct Pair {{ float factor, rest; }};\n"
             "float luma(vec3 c);\n"
+            "const float[3] weights = float[3](1.0, 1.0, 1.0);\n"
+            "float _luma(vec3 c) {{ return weights[2] * c.g; }}\n"
+            "float own(vec3 c) {{ return _luma(c); }}\n"
             "Pair pair_of(float a) {{ return Pair(a, unused[1]); }}\n"
             "float luma(vec3 c) {{ Pair pair = pair_of(factor); return c.g * pair.factor * pair.rest; }}\n"
-            "float {0}_own(vec3 c) {{ return luma(c); }}\n"
+            "float {0}_own(vec3 c) {{ return luma(c) * own(vec3(1.0)); }}\n"
             "vec4 {0}(vec4 color, Pixel pixel, {1} parameters) {{ return vec4(vec3({0}_own(color.rgb)), 1.0); }}\n",
             name, type, factor);
     };

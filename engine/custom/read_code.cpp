@@ -16,6 +16,7 @@
 #include "custom/words.hpp"
 #include "gpu/shader/glsl_scan.hpp"
 #include "plan/frame_inputs.hpp"
+#include "plan/text/glsl_names.hpp"
 
 namespace darkroom::custom {
 
@@ -175,8 +176,16 @@ std::string with_own_names(std::string_view code, std::string_view effect) {
     const auto is_one_of = [](std::string_view text, std::string_view marks) {
         return text.size() == 1 && marks.find(text) != std::string_view::npos;
     };
-    std::set<std::string_view> names;
+    std::set<std::string_view> names, words;
     std::string out;
+    // Names of GLSL and of kernels stay theirs: a file may have a further form of one.
+    const auto is_others = [](std::string_view name) {
+        return plan::is_glsl_keyword(name) || plan::is_function_name(name);
+    };
+    const auto own_name = [&](std::string_view name) {
+        std::string plain = fmt::format("{}_{}", effect, name);
+        return name.starts_with('_') || words.contains(plain) ? fmt::format("{}_0{}", effect, name) : plain;
+    };
     // Twice: which names the file gives, then in their places. Names of members stay, as they do behind a dot.
     for (const bool is_renaming : {false, true}) {
         gpu::GlslScanner scanner(code);
@@ -188,12 +197,15 @@ std::string with_own_names(std::string_view code, std::string_view effect) {
             const bool is_declared = is_word && is_one_of(scanner.peek().text, depth == 0 ? "(=[;," : "[;,") &&
                                      (last.kind == Token::Kind::Word || is_one_of(last.text, "],"));
             const bool is_member = depth > 0 && is_struct && is_declared;
+            if (is_word) words.insert(token.text);
             if (is_renaming) {
                 if (is_word && !is_member && names.contains(token.text))
-                    out.append(effect).append(token.text.starts_with('_') ? "" : "_");
-                out += token.text;
-            } else if (depth == 0 && !is_shared && is_word && (is_declared || last.text == "struct") &&
-                       token.text != effect && !token.text.starts_with(std::string(effect) + "_")) {
+                    out += own_name(token.text);
+                else
+                    out += token.text;
+            } else if (depth == 0 && !is_others(token.text) && !is_shared && is_word &&
+                       (is_declared || last.text == "struct") && token.text != effect &&
+                       !token.text.starts_with(std::string(effect) + "_")) {
                 names.insert(token.text);
             }
             if (token.kind == Token::Kind::Blank || token.kind == Token::Kind::Directive) continue;

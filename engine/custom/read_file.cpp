@@ -148,11 +148,16 @@ class FileReader {
         if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; allowed is text");
         auto code = expand_code(text_, line_);
         if (!code) return failure(std::move(code));
-        constexpr std::string_view effect_line = "// @effect ";
-        const std::size_t at = code->find(effect_line);
-        const std::string_view named =
-            at == std::string::npos ? std::string_view{} : std::string_view(*code).substr(at + effect_line.size());
-        const std::string name(trimmed(named.substr(0, named.find_first_of(":\n"))));
+        constexpr std::string_view effect_word = "@effect ";
+        std::string name;
+        for (std::size_t at = code->find(effect_word); name.empty() && at != std::string::npos;
+             at = code->find(effect_word, at + 1)) {
+            const std::size_t begin = code->rfind('\n', at) + 1;
+            const std::string_view line = std::string_view(*code).substr(begin, code->find('\n', at) - begin);
+            if (!line.starts_with("//") || trimmed(line.substr(2, at - begin - 2)).size() != 0) continue;
+            const std::string_view named = line.substr(at - begin + effect_word.size());
+            name = trimmed(named.substr(0, named.find(':')));
+        }
         split_lines(out_.keep(check_name(name) ? with_own_names(*code, name) : *code));
         if (auto ok = read_lines(); !ok) return ok;
         line_ = 1;

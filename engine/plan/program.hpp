@@ -67,13 +67,13 @@ struct Entry {
         out.is_associated = before.is_associated;
         return out;
     }
-    /// At this opacity: is its result the output as it is?
-    [[nodiscard]] bool is_plain(float opacity) const {
-        return opacity == 1.0f && desc.blend == BlendMode{} && !desc.mask.is_given();
+    /// At this opacity: is its result the output as it is? `has_mask`: by the plan, whose wires a rewire leaves alone.
+    [[nodiscard]] bool is_plain(float opacity, bool has_mask) const {
+        return opacity == 1.0f && desc.blend == BlendMode{} && !has_mask;
     }
     /// In every frame: layers may move the opacity.
     [[nodiscard]] bool is_plain() const {
-        return is_plain(desc.opacity) &&
+        return is_plain(desc.opacity, desc.mask.is_given()) &&
                std::ranges::none_of(layers, [](const Layer& l) { return l.opacity.has_value(); });
     }
 };

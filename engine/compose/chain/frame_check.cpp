@@ -323,6 +323,9 @@ bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& fr
         return is_empty(most) || (extent.width <= most.width && extent.height <= most.height);
     };
     if (!is_within(frame.color, desc.max_extent) || !is_within(frame.target, desc.target_extent)) return false;
+    if (frame.view >= desc.views || (desc.is_depth_planar && frame.camera.depth != DepthKind::Planar) ||
+        (desc.is_velocity_plain && frame.camera.velocity != VelocityKind{}))
+        return false;
     return std::ranges::all_of(program.imports, [&](const auto& which) {
         if (!which || which->kind == Kind::Shadow || which->kind == Kind::Watched) return true;
         const ImageRef& image = host_image(frame, *which);

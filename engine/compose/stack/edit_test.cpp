@@ -290,6 +290,52 @@ TEST_F(ComposeEdit, AHostThatAsksForTheComingPlanGetsNoOther) {
     EXPECT_EQ(composer.coming_plan(), nullptr);
 }
 
+TEST_F(ComposeEdit, WhatAHostWasToldOfIsTakenThoughANewerPlanIsReady) {
+    const Host host(small_picture());
+    Composer composer(host.device, {.max_threads = 0});
+    add(composer, "exposure", {{"exposure", 2}});
+    must(composer.compile(host.compile_desc()));
+    add(composer, "gaussian_blur");
+    must(composer.compile_later(host.compile_desc()));
+    const Plan* const told = composer.coming_plan();
+    ASSERT_NE(told, nullptr);
+    const std::string text = told->text();
+    add(composer, "negative");
+    must(composer.compile_later(host.compile_desc()));
+    EXPECT_EQ(told->text(), text) << "it is the host's until the next recording";
+    static_cast<void>(host.run(composer));
+    EXPECT_EQ(composer.current_plan()->text(), text);
+    const Plan* const newest = composer.coming_plan();
+    ASSERT_NE(newest, nullptr);
+    EXPECT_NE(newest->text().find("negative"), std::string::npos);
+}
+
+TEST_F(ComposeEdit, AnEntryReplacedTwiceIsStillSwitchedInThePictureThatRuns) {
+    const Host host(small_picture());
+    Composer composer(host.device);
+    const Handle entry = add(composer, "negative");
+    must(composer.compile(host.compile_desc()));
+    EXPECT_GT(test::worst_difference(host.run(composer), small_picture()), 0.1);
+    must(composer.replace(entry, *find_effect("grayscale"), nullptr));
+    must(composer.replace(entry, *find_effect("exposure"), nullptr));
+    must(composer.set_enabled(entry, false));
+    EXPECT_EQ(test::worst_difference(host.run(composer), small_picture()), 0);
+}
+
+TEST_F(ComposeEdit, AMaskThatIsWiredAwayStaysInThePictureThatRuns) {
+    ReferenceImage picture = small_picture();
+    for (Rgba& color : picture.pixels) color.a = 0.5;
+    const Host host(picture);
+    Composer composer(host.device);
+    const Handle entry = add(composer, "negative", {}, {.mask = scene_alpha});
+    must(composer.compile(host.compile_desc()));
+    composer.wait_for_kernels();
+    const ReferenceImage before = host.run(composer);
+    must(composer.rewire(entry, {}));
+    composer.wait_for_kernels();
+    EXPECT_EQ(test::worst_difference(host.run(composer), before), 0);
+}
+
 /// Holds whoever makes a pipeline while it is closed.
 std::atomic<bool> is_gate_closed{false};
 std::atomic<int> waiting{0};

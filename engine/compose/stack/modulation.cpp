@@ -167,11 +167,13 @@ std::vector<std::string> Composer::layer_names() const try {
 }
 
 void Composer::remove_pulses() {
-    for (const auto& entry : state_->stack) entry->pulses.clear();
+    for (const auto& entry : state_->stack) State::for_all_of(*entry, [](plan::Entry& one) { one.pulses.clear(); });
 }
 void Composer::remove_layer(std::string_view name) {
     for (const auto& entry : state_->stack)
-        std::erase_if(entry->layers, [&](const plan::Layer& layer) { return layer.name == name; });
+        State::for_all_of(*entry, [&](plan::Entry& one) {
+            std::erase_if(one.layers, [&](const plan::Layer& layer) { return layer.name == name; });
+        });
 }
 
 std::vector<std::uint32_t> Composer::current(Handle handle) const try {

@@ -27,7 +27,7 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
         for (std::size_t i = 0; i < steps.size(); ++i) {
             const std::uint32_t entry = steps[i].entry;
             if (!values.is_on(entry)) continue;
-            shape.set_step(i, entries[entry]->is_plain(values.opacity(entry)));
+            shape.set_step(i, entries[entry]->is_plain(values.opacity(entry), steps[i].has_mask));
         }
     }
     for (const Literal& literal : pass.literals) {
