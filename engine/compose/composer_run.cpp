@@ -110,15 +110,16 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
 }
 
 Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot snapshot) {
-    const std::shared_ptr<compose::StackProgram> older = program;
-    if (!program || !program->serves(snapshot.values, snapshot.desc)) {
+    // One that cannot be made leaves what the next is to share.
+    std::shared_ptr<compose::StackProgram> own = program;
+    if (!own || !own->serves(snapshot.values, snapshot.desc)) {
         auto planned = compose::plan_stack(*context, snapshot.values, snapshot.desc);
         if (!planned) return failure(std::move(planned));
-        program = std::move(*planned);
+        own = std::move(*planned);
     }
     auto made = compose::Chain::create(*context, *worker, histories,
-                                       {.program = program,
-                                        .older = older,
+                                       {.program = own,
+                                        .older = program,
                                         .clock = &clock,
                                         .compile = snapshot.desc,
                                         .slots = desc.frames_in_flight * snapshot.desc.views,
@@ -126,6 +127,7 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
                                         .has_timers = desc.has_timers,
                                         .entries = std::move(snapshot.entries)},
                                        snapshot.values);
+    if (made) program = std::move(own);
     histories.trim();
     context->save_pipeline_cache_if_grown();
     return made;

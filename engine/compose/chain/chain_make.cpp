@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <mutex>
 #include <utility>
 
@@ -64,8 +65,11 @@ const Plan& Chain::plan() {
     if (recordings_ == 0) return plan_;
     const plan::Program& program = program_of();
     std::vector<std::uint32_t> now(values_.gates().begin(), values_.gates().end());
-    for (std::uint32_t i = 0; i < entries_.size(); ++i)
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+        now.push_back(values_.is_on(i) ? 1 : 0);
+        now.push_back(std::bit_cast<std::uint32_t>(values_.opacity(i)));
         now.insert(now.end(), values_.words(i), values_.words(i) + entries_[i]->base.size());
+    }
     if (now != described_) {
         plan_ = plan::describe_frame(program, *compiled_, desc_.compile, entries_, values_);
         described_ = std::move(now);

@@ -178,7 +178,9 @@ Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {
                      .layer_count = 2,
                      .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                      .last_access = VK_ACCESS_2_MEMORY_READ_BIT,
-                     .final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+                     .final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                     .final_stages = VK_PIPELINE_STAGE_2_NONE,
+                     .final_access = VK_ACCESS_2_NONE};
     return out;
 }
 

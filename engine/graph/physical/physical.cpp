@@ -243,10 +243,12 @@ bool Physical::has_same_extent(std::uint32_t history_index, const Extents& a, co
     return of_a.width == of_b.width && of_a.height == of_b.height;
 }
 
-const HistoryImages& Physical::source_of(const HistoryImages& images) const {
-    // The plan that the older images belong to outlives the recordings that are unfinished when this one begins.
-    const auto older = images.last_written == HistoryImages::never ? images.older.lock() : nullptr;
-    return older ? *older : images;
+std::shared_ptr<const HistoryImages> Physical::source_of(const HistoryImages& images) const {
+    // The plan that the older images belong to outlives the recordings that are unfinished when this one begins;
+    // whoever looks at them later must not be the one who frees them.
+    std::shared_ptr<const HistoryImages> older =
+        images.last_written == HistoryImages::never ? images.older.lock() : nullptr;
+    return older ? older : std::shared_ptr<const HistoryImages>(std::shared_ptr<void>(), &images);
 }
 
 void Physical::prepare(const Extents& extents, bool is_related, std::uint32_t view_index) {
@@ -257,9 +259,10 @@ void Physical::prepare(const Extents& extents, bool is_related, std::uint32_t vi
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);
         if (images == nullptr) continue;
-        const HistoryImages& source = source_of(*images);
-        images->is_valid = is_related && source.last_written == view.now.recordings;
-        is_resampled_ |= images->is_valid && (&source != images || !has_same_extent(index, view.now.extents, extents));
+        const std::shared_ptr<const HistoryImages> source = source_of(*images);
+        images->is_valid = is_related && source->last_written == view.now.recordings;
+        is_resampled_ |=
+            images->is_valid && (source.get() != images || !has_same_extent(index, view.now.extents, extents));
     }
     if (!is_resampled_) return;
     // All go on in their other image, so they have one parity still.
@@ -368,7 +371,8 @@ void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk
                                std::uint32_t history_index, const Extents& from, const Extents& to) const {
     const HistoryImages& images = *history(history_index, view_index);
     const std::size_t parity = histories(view_index).now.recordings & 1;
-    const gpu::Image &source = source_of(images).images[1 - parity], &target = images.images[parity];
+    const std::shared_ptr<const HistoryImages> from_images = source_of(images);
+    const gpu::Image &source = from_images->images[1 - parity], &target = images.images[parity];
     const bool is_linear =
         images.resampling == HistoryImages::Resampling::Linear && !has_same_extent(history_index, from, to);
     const Entry& entry = entries_[histories_[history_index].slots[0]];

@@ -119,7 +119,7 @@ class Physical {
     /// Is a history as large in both frames?
     [[nodiscard]] bool has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const;
     /// The images that the last recording left it in.
-    [[nodiscard]] const HistoryImages& source_of(const HistoryImages& images) const;
+    [[nodiscard]] std::shared_ptr<const HistoryImages> source_of(const HistoryImages& images) const;
     void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, const Entry& entry, VkImage image,
                         const Extents& from, const Extents& to) const;
 
