@@ -8,6 +8,7 @@
 
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_run.hpp"
+#include "plan/text/effect_files.hpp"
 #include "shared/camera.hpp"
 #include "volumetric/volumetric_reference.hpp"
 #include "volumetric/volumetric_test_world.hpp"
@@ -298,8 +299,7 @@ TEST(EffectVolumetric, NothingIsReadBeyondNeutralImages) {
     std::string text;
     for (const EffectFile& file : shared_files())
         if (file.name == "shared/planar_distance.glsl") text += file.text;
-    for (const EffectFile& file : embedded_files("volumetric"))
-        if (file.name == "volumetric.glsl") text += file.text;
+    text += plan::own_text(effect_info(Volumetric{}), "volumetric.glsl").glsl;
     text.erase(text.find("#include"), text.find('\n', text.find("#include")) - text.find("#include"));
     for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster})
         for (const VkFormat storage : {VK_FORMAT_UNDEFINED, VK_FORMAT_R32G32B32A32_SFLOAT}) {
