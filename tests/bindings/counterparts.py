@@ -74,6 +74,7 @@ NONE = {
     "ImageRef::used_region": "the host's own arithmetic",
     "Handle::is_given": "0 says it",
     "shadow_light": "the host's own arithmetic",
+    "seconds_between_frames": "the host's own arithmetic",
     "KernelStatistics::value": "the host's own search in a list",
     "Plan::rounds": "one more than the largest round of the plan as JSON",
     "find_entry": "a look is opaque in C: darkroom_look_override changes what it holds",

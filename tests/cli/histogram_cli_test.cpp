@@ -42,9 +42,9 @@ TEST_F(CliHistogram, TellsTheSharesOfStopsAndWhatIsNoLight) {
     const json out = json::parse(document.out);
     EXPECT_EQ(out.at("black"), 20);
     EXPECT_EQ(out.at("not_numbers"), 1);
-    EXPECT_EQ(out.at("stops").size(), 8u);
+    EXPECT_EQ(out.at("stops").size(), 24u) << "what is infinite counts as the largest half";
     EXPECT_EQ(out.at("stops").front(), (json{{"from", -5}, {"pixels", 9}}));
-    EXPECT_NEAR(out.at("brightest").get<double>(), 0.72, 1e-3);
+    EXPECT_EQ(out.at("brightest"), 65504);
     EXPECT_EQ(json::parse(run({"histogram", path("frame.exr"), path("frame.exr"), "--json"}).out).size(), 2u);
 }
 

@@ -260,7 +260,12 @@ cat >"$work/bin/ctest" <<'STUB'
 printf '%s\n' "100% tests passed" "Total Test time"
 [[ $* != *${STUB_RED:-none}* ]]
 STUB
-printf '#!/usr/bin/env bash\necho "on_release $*" >>"$STUB_LOG"\n[[ $1 != "${STUB_OLD:-}" ]]\n' >"$tree/scripts/on_release"
+cat >"$tree/scripts/on_release" <<'STUB'
+#!/usr/bin/env bash
+echo "on_release $1 ${2} ${3//[[:space:]]*/}" >>"$STUB_LOG"
+[[ $2 != bash || -t 1 ]] || tar -cT /dev/null
+[[ $1 != "${STUB_OLD:-}" ]]
+STUB
 export HOME=$work/home
 : >"$STUB_LOG"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run"
@@ -273,12 +278,16 @@ export HOME=$work/home
 [[ $(grep -oE 'preset (clang|plain|without-compiler|sanitize|release)' "$STUB_LOG" | cut -d' ' -f2 | xargs) == \
     "clang plain without-compiler sanitize release release" ]] ||
     fail ".ci/more: builds"
-[[ $(grep '^on_release' "$STUB_LOG") == "on_release bookworm tests/scripts/page_machine.sh
-on_release trixie bash -c ./darkroom --yes render "*" && ./test --yes
-on_release testing ./test --yes -N" ]] || fail ".ci/more: releases"
+[[ $(grep '^on_release' "$STUB_LOG" | sed 's/ *$//') == "on_release bookworm tests/scripts/page_machine.sh
+on_release trixie bash -c
+on_release bookworm bash -euc
+on_release bookworm tests/scripts/debs.sh /mnt/data
+on_release trixie bash -euc
+on_release trixie tests/scripts/debs.sh /mnt/data
+on_release testing ./test --yes" ]] || fail ".ci/more: releases"
 ! STUB_RED=build-ci-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
 last=$("$tree/.ci/more" --last)
-[[ $(grep -oE '[a-z-]+ passed [0-9-]+ [0-9:]+ UTC at ' <<<"$last" | wc -l) == 9 ]] || fail ".ci/more --last: $last"
+[[ $(grep -oE '[a-z-]+ passed [0-9-]+ [0-9:]+ UTC at ' <<<"$last" | wc -l) == 10 ]] || fail ".ci/more --last: $last"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run again"
 grep -qF "(.ci/more): $last" "$work/out" || fail ".ci/run says when .ci/more ran"
 STUB_LACKS=clang "$tree/.ci/more" >"$work/out" 2>"$work/said" </dev/null || fail ".ci/more without clang"

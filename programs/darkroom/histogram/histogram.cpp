@@ -28,25 +28,24 @@ constexpr std::array percents{1, 5, 25, 50, 75, 95, 99};
 /// Luminances of the pixels, Rec. 709.
 struct Light {
     std::vector<double> above_zero;  ///< sorted
-    std::uint64_t pixels = 0, black = 0, above_white = 0, not_numbers = 0, transparent = 0;
+    std::uint64_t pixels = 0, black = 0, above_white = 0, transparent = 0;
+    std::uint64_t not_numbers = 0;  ///< in the file; reading made them 0 and the largest half
 };
 
 Light light_of(const FrameFile& frame) {
     Light out;
     const std::vector<float>& numbers = frame.color.pixels;
     out.pixels = numbers.size() / 4;
+    out.not_numbers = frame.counts.nan_color + frame.counts.infinite_color;
     for (std::size_t i = 0; i < numbers.size(); i += 4) {
         const double luminance = 0.2126 * numbers[i] + 0.7152 * numbers[i + 1] + 0.0722 * numbers[i + 2];
         if (frame.has_alpha && numbers[i + 3] == 0)
             ++out.transparent;
-        else if (!std::isfinite(luminance))
-            ++out.not_numbers;
         else if (luminance <= 0)
             ++out.black;
         else
             out.above_zero.push_back(luminance);
-        out.above_white +=
-            std::isfinite(luminance) && std::max({numbers[i], numbers[i + 1], numbers[i + 2]}) > 1 ? 1 : 0;
+        out.above_white += std::max({numbers[i], numbers[i + 1], numbers[i + 2]}) > 1 ? 1 : 0;
     }
     std::ranges::sort(out.above_zero);
     return out;
@@ -137,7 +136,7 @@ CommandRow histogram_command() {
                     "histogram", "Tells how light is spread over frames and pictures, in stops");
                 command.examples(
                     "darkroom histogram frame.exr\n"
-                    "darkroom histogram before.png after.png\n"
+                    "darkroom histogram reference.png changed.png\n"
                     "darkroom histogram frame.exr --json");
                 const auto inputs = std::make_shared<std::vector<std::string>>();
                 const auto is_json = std::make_shared<bool>();
