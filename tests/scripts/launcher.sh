@@ -299,10 +299,10 @@ is_last() {
     [[ $("$tree/.ci/more" --last | grep -oE '[a-z-]+ (passed|failed|never)' | xargs) == "$1" ]] || fail "$2: $("$tree/.ci/more" --last)"
 }
 failed="clang failed plain failed without-compiler failed sanitize failed soak failed languages failed"
-is_last "$failed pages passed trixie passed testing passed" ".ci/more that failed"
+is_last "$failed pages passed trixie passed debs passed testing passed" ".ci/more that failed"
 # One part alone leaves what is known of the others.
 ! STUB_OLD=testing "$tree/.ci/more" testing >"$work/out" 2>"$work/said" || fail ".ci/more testing"
-is_last "$failed pages passed trixie passed testing failed" ".ci/more testing"
+is_last "$failed pages passed trixie passed debs passed testing failed" ".ci/more testing"
 ! "$tree/.ci/more" woody 2>"$work/said" || fail ".ci/more woody"
 grep -q '^darkroom: woody: no part, which are: clang ' "$work/said" || fail ".ci/more names no parts"
 echo "launcher: all as it should be"
