@@ -40,7 +40,7 @@ def compare(reference, test, *, is_linear: bool | None = None, pixels_per_degree
     kinds = [getattr(getattr(array, "dtype", None), "kind", "f") for array in (reference, test)]
     if is_linear is None:
         if kinds[0] != kinds[1]:
-            raise Error("compare: bytes and floats: is_linear says what the floats are")
+            raise Error(f"compare: {reference.dtype} and {test.dtype}: is_linear says what the floats are")
         is_linear = kinds[0] == "f"
     pictures = from_codes16(reference), from_codes16(test)
     return Comparison(**_engine.compare(*pictures, is_linear, pixels_per_degree))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What Darkroom raises."""
+"""What Darkroom raises, and how files are written."""
 
 import contextlib
 import difflib
@@ -47,13 +47,30 @@ class MissingFileError(Error, FileNotFoundError):
 
 @contextlib.contextmanager
 def of_file(path):
-    """What goes wrong with a file that is not there is an error of that kind."""
+    """That there is no such file is an error of that kind."""
     try:
         yield
     except Error as error:
-        if isinstance(error, OSError) or os.path.exists(path):
+        if isinstance(error, OSError) or os.path.exists(path) or "no such file" not in error.text.lower():
             raise
         raise MissingFileError(error.text, error.fault, error.code) from None
+
+
+def store(path, data):
+    """Writes the whole file or none: what was there stays where it cannot be."""
+    path = os.fspath(path)
+    real = os.path.realpath(path)
+    part = f"{real}.{os.getpid()}.part"
+    try:
+        try:
+            with open(part, "wb") as file:
+                file.write(data)
+            os.replace(part, real)
+        finally:
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(part)
+    except OSError as error:
+        raise Error(f"{path}: {error.strerror}", "machine") from None
 
 
 def nearest(wrong, names) -> str:

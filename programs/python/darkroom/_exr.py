@@ -10,7 +10,7 @@ import zlib
 
 import numpy
 
-from ._error import Error
+from ._error import Error, store
 
 _TYPES = {0: numpy.dtype("<u4"), 1: numpy.dtype("<f2"), 2: numpy.dtype("<f4")}
 _LINES = {0: 1, 2: 1, 3: 16}  # of a chunk, by compression: none, ZIPS, ZIP
@@ -199,5 +199,4 @@ def write(path, channels, attributes=()):
     for chunk in chunks:
         places.append(struct.pack("<q", at))
         at += len(chunk)
-    with open(path, "wb") as file:
-        file.write(b"".join([head, *places, *chunks]))
+    store(path, b"".join([head, *places, *chunks]))

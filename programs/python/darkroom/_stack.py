@@ -7,7 +7,7 @@ import os
 import numpy
 
 from . import _device, _engine
-from ._error import Error, nearest, of_file
+from ._error import Error, nearest, of_file, store
 from ._frame import Camera, Frame, as_array, as_frame, from_codes16, size_of, warn
 from ._table import Table
 
@@ -139,12 +139,7 @@ class Stack:
 
     def save(self, path) -> None:
         """Writes the look to a file."""
-        text = self.text
-        try:
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(text)
-        except OSError as error:
-            raise Error(f"{os.fspath(path)}: {error.strerror}", "machine") from None
+        store(path, self.text.encode())
 
     def develop(self, frame, *, output: str = "encoded8", size=None, **layers):
         """Develops one frame: an array, a Frame, or a dictionary of layers; `layers` are those of Frame.

@@ -6,7 +6,7 @@ import os
 import numpy
 
 from . import _engine
-from ._error import Error, of_file
+from ._error import Error, of_file, store
 
 
 class Table:
@@ -61,9 +61,4 @@ class Table:
 
     def write(self, path) -> None:
         """Writes a .cube file."""
-        text = self._engine.text()
-        try:
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(text)
-        except OSError as error:
-            raise Error(f"{os.fspath(path)}: {error.strerror}", "machine") from None
+        store(path, self._engine.text().encode())

@@ -17,7 +17,7 @@ import zlib
 import numpy
 
 from . import _exr
-from ._error import Error, of_file
+from ._error import Error, of_file, store
 from ._frame import Camera, Light, as_array, as_frame
 from ._stack import Stack
 from ._table import Table
@@ -228,8 +228,7 @@ def write(path, picture) -> None:
     head = struct.pack(">IIBBBBB", width, height, bits, 2 if channels == 3 else 6, 0, 0, 0)
     rows = numpy.concatenate([numpy.zeros((height, 1), numpy.uint8), samples], axis=1)
     parts = [chunk(b"IHDR", head), chunk(b"sRGB", b"\0"), chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))]
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + b"".join(parts) + chunk(b"IEND", b""))
+    store(path, b"\x89PNG\r\n\x1a\n" + b"".join(parts) + chunk(b"IEND", b""))
 
 
 def info(path) -> dict:

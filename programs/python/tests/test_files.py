@@ -8,6 +8,11 @@ import unittest
 
 import numpy
 
+try:
+    import resource
+except ImportError:
+    resource = None
+
 import darkroom
 from darkroom import files
 from support import Case, light, source
@@ -107,6 +112,28 @@ class Files(Case):
         white = numpy.full((2, 2, 3), 255, numpy.uint8)
         self.assertSame(darkroom.lut(white, lut=path), numpy.full((2, 2, 3), 153, numpy.uint8))
 
+    @unittest.skipUnless(resource, "a limit of what a file may have is of POSIX")
+    def test_what_was_there_stays_where_nothing_can_be_written(self):
+        paths = [self.folder / name for name in ("a.png", "a.exr", "a.toml")]
+        picture = darkroom.develop(light())
+        write = [lambda p: files.write(p, picture), lambda p: files.write(p, light()), darkroom.Stack().bloom().save]
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        for path, one in zip(paths, write):
+            path.write_bytes(b"precious")
+            resource.setrlimit(resource.RLIMIT_FSIZE, (16, limits[1]))
+            try:
+                with self.assertRaises(darkroom.Error) as raised:
+                    one(path)
+            finally:
+                resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            self.assertEqual(str(raised.exception), f"{path}: File too large")
+            self.assertEqual(path.read_bytes(), b"precious")
+        self.assertEqual(sorted(self.folder.iterdir()), sorted(paths))
+        (self.folder / "link.toml").symlink_to("a.toml")
+        darkroom.Stack().bloom().save(self.folder / "link.toml")
+        self.assertIn("bloom", (self.folder / "a.toml").read_text(encoding="utf-8"))
+        self.assertTrue((self.folder / "link.toml").is_symlink())
+
     def test_what_is_wrong_is_said(self):
         self.assertEqual(self.assertRaisesText(f"{self.folder}/no.exr: No such file or directory", files.read_frame,
                                                self.folder / "no.exr").fault, "user")  # fmt: skip
@@ -117,8 +144,13 @@ class Files(Case):
             (self.folder / "cut.exr").write_bytes(whole[:size])
             with self.assertRaises(darkroom.Error):
                 files.read_frame(self.folder / "cut.exr")
-        with self.assertRaisesRegex(darkroom.Error, "nosuch.exr"):
+        with self.assertRaisesRegex(FileNotFoundError, "nosuch.exr"):
             files.read(self.folder / "nosuch.exr")
+        # Frames of a sequence are there, though no file has this name.
+        (self.folder / "a.0001.exr").write_bytes(b"no")
+        with self.assertRaises(darkroom.Error) as raised:
+            files.read(self.folder / "a.####.exr")
+        self.assertNotIsInstance(raised.exception, FileNotFoundError)
         was = os.environ.get("DARKROOM_PROGRAM")
         os.environ["DARKROOM_PROGRAM"] = "/nowhere/darkroom"
         try:

@@ -243,7 +243,7 @@ class Comparisons(Case):
         self.assertEqual(found.flip_map.shape, picture.shape)
         self.assertRaisesText("test: 48x26 pixels: allowed is 48x27, the reference's", darkroom.compare, picture,
                               picture[1:])  # fmt: skip
-        self.assertRaisesText("compare: bytes and floats: is_linear says what the floats are", darkroom.compare,
+        self.assertRaisesText("compare: uint8 and float32: is_linear says what the floats are", darkroom.compare,
                               picture, light())  # fmt: skip
 
 
