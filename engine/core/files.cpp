@@ -146,21 +146,21 @@ Result<> write_file(const fs::path& path, std::span<const std::byte> content, bo
     return temporary->commit();
 }
 
-Result<> check_own_file(const fs::path& path) {
+Result<> check_own_file(const fs::path& path, FileOwner owner) {
     std::error_code error;
     const fs::file_status status = fs::symlink_status(path, error);
     if (!fs::exists(status)) return {};
     const auto refuse = [&](std::string_view what) {
-        return user_error(fmt::format("{}: {}; a regular file of this user, or none, is needed here",
-                                      printable(path.string()), what));
+        return user_error(fmt::format("{}: {}; a regular file{}, or none, is needed here", printable(path.string()),
+                                      what, owner == FileOwner::ThisUser ? " of this user" : ""));
     };
     if (fs::is_symlink(status)) return refuse("is a link, which is not followed");
     if (!fs::is_regular_file(status)) return refuse(fs::is_directory(status) ? "is a folder" : "is no regular file");
-    return is_of_this_user(path) ? Result<>() : refuse("belongs to another user");
+    return owner == FileOwner::Anyone || is_of_this_user(path) ? Result<>() : refuse("belongs to another user");
 }
 
-Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, bool waits_for_disk) {
-    if (Result<> checked = check_own_file(path); !checked) return checked;
+Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
+    if (Result<> checked = check_own_file(path, owner); !checked) return checked;
     auto temporary = AtomicPath::beside(path);
     if (!temporary) return failure(std::move(temporary));
     // A link that was put there since leads to another folder or another name.
@@ -170,7 +170,7 @@ Result<> write_own_file(const fs::path& path, std::span<const std::byte> content
         return user_error(fmt::format("{}: is a link, which is not followed", printable(path.string())));
     OpenFile file;
     if (const auto failed = file.open(temporary->path(), OpenFile::How::Truncate)) return open_error(path, failed);
-    if (auto written = write_and_close(file, path, content, waits_for_disk); !written) return written;
+    if (auto written = write_and_close(file, path, content); !written) return written;
     return temporary->commit();
 }
 

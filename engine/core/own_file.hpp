@@ -11,11 +11,14 @@
 
 namespace darkroom {
 
-/// May a file of ours be kept under this name? There is none, or a regular one of this user that is no link.
-[[nodiscard]] Result<> check_own_file(const std::filesystem::path& path);
+/// Whose may what stands there be? Anyone's in folders that several people share.
+enum class FileOwner { ThisUser, Anyone };
+
+/// May a file of ours be kept under this name? There is none, or a regular one that is no link, of this owner.
+[[nodiscard]] Result<> check_own_file(const std::filesystem::path& path, FileOwner owner = FileOwner::ThisUser);
 
 /// write_file, after check_own_file. What stands there is replaced, and never written through.
 [[nodiscard]] Result<> write_own_file(const std::filesystem::path& path, std::span<const std::byte> content,
-                                      bool waits_for_disk = false);
+                                      FileOwner owner = FileOwner::ThisUser);
 
 }  // namespace darkroom

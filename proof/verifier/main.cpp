@@ -55,7 +55,7 @@ Result<> check_outputs(const VerifyFlags& flags) {
     // What is written in place, such as /dev/stdout, is not tried. A pipe may have nobody at its other end.
     if (fs::exists(report, error) && fs::is_other(report, error) && !fs::is_fifo(fs::symlink_status(report, error)))
         return {};
-    if (Result<> done = darkroom::check_own_file(report); !done) return done;
+    if (Result<> done = darkroom::check_own_file(report, darkroom::FileOwner::Anyone); !done) return done;
     return check_output(report, FileSet({}));
 }
 

@@ -126,7 +126,7 @@ std::string cube_of(const darkroom::ColorTable& table) {
 }
 
 Result<> write_text(const fs::path& path, const std::string& text) {
-    return darkroom::write_own_file(path, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(path, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone);
 }
 
 /// The tables and pictures that the look names.

@@ -149,7 +149,7 @@ auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Jso
 // Text that is no UTF-8, as names of files may be, is written with a sign in its place.
 Result<> write(const fs::path& path, const Json& json) {
     const std::string text = json.dump(1) + "\n";
-    return darkroom::write_own_file(path, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(path, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone);
 }
 
 Result<std::vector<fs::path>> record_files(const fs::path& folder) {

@@ -139,7 +139,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
                 return user_error(fmt::format("{}: -o and --save-frame name the same file", printable(path.string())));
             if (Result<> done = check_output(path, inputs, run.missing_folders()); !done) return done;
             if (place == &shot.frame)
-                if (Result<> done = darkroom::check_own_file(path); !done) return done;
+                if (Result<> done = darkroom::check_own_file(path, darkroom::FileOwner::Anyone); !done) return done;
         }
     return {};
 }
