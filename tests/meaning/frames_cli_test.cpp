@@ -198,6 +198,9 @@ TEST_F(CliFrameMeaning, EachEyeStaysUnderItsName) {
                               {.name = "depth_right", .view = "right", .channels = {{"Z", all(7)}}}});
     for (const char* const file : {"channels.exr", "parts.exr"}) {
         const std::string in = file;
+        EXPECT_EQ(read_frame(path(in))->warnings, (std::vector<std::string>{
+                                                      "has the views left, right: left is developed, --eye says which"}))
+            << "one thing is said once";
         ASSERT_EQ(develop(in, "out.exr", {"--eye", "right", "--keep-layers", "--exposure", "2"}).code, 0);
         const Result<FrameFile> left = read_frame(path("out.exr"), {.view = "left"});
         const Result<FrameFile> right = read_frame(path("out.exr"), {.view = "right"});

@@ -231,32 +231,36 @@ Result<> Finder::choose_view(FrameChannels& found) {
 const Layer* Finder::find_named_color(FrameChannels& found) const {
     // How early a layer is taken; what is no picture, last of all.
     constexpr std::array<std::string_view, 6> by_last{"combined", "rgba", "rgb", "c", "beauty", "default"};
-    constexpr std::size_t plain = by_last.size() + 2, any = plain + 1, never = any + 1;
+    constexpr std::size_t plain = by_last.size() + 2, gray = plain + 1, any = gray + 1, last_gray = any + 1,
+                          never = last_gray + 1;
     const auto rank = [&](const Layer& layer) -> std::size_t {
-        if (!layer.has("rgb")) return never;
-        if (part_count_ == 1 && layer.is_plain()) return 0;
+        const bool is_gray = !layer.has("rgb");
+        if (is_gray && !(layer.is_plain() && layer.has("y") && !layer.has("x"))) return never;
+        if (part_count_ == 1 && layer.is_plain()) return is_gray ? gray : 0;
         const std::string name = lower(layer.name), last = last_component(layer.name);
         if (last == "composite" || last_component(parent(layer.name)) == "composite") return 1;
         const auto* const known = std::ranges::find(by_last, last);
         if (known != by_last.end()) return 2 + static_cast<std::size_t>(known - by_last.begin());
-        if (layer.is_plain()) return plain;
+        if (layer.is_plain() && !is_gray) return plain;
         const auto has_word = [&](std::string_view word) { return name.find(word) != std::string::npos; };
         const bool is_data = last == "n" || last == "p" || last == "vector" || has_word("crypto") ||
                              has_word("normal") || has_word("depth") || has_word("velocity") || has_word("motion") ||
                              has_word("transparency") || has_word("position") || has_word("matte");
+        if (is_gray) return is_data ? last_gray : gray;
         return is_data ? never : any;
     };
     const Layer* best = nullptr;
-    std::vector<const Layer*> equals;
-    for (const Layer& layer : layers_) {
-        const std::size_t own = rank(layer);
-        if (own == never || (best != nullptr && own > rank(*best))) continue;
-        if (best == nullptr || own < rank(*best)) equals.clear();
-        if (equals.empty()) best = &layer;
-        equals.push_back(&layer);
-    }
-    for (const Layer* const other : equals)
-        if (other != best) found.other_colors.push_back(other->name);
+    std::size_t least = never;
+    for (const Layer& layer : layers_)
+        if (const std::size_t own = rank(layer); own < least) {
+            best = &layer;
+            least = own;
+        }
+    // That there are other views is told by their names.
+    for (const Layer& layer : layers_)
+        if (best != nullptr && &layer != best && (layer.view.empty() || layer.view == best->view) &&
+            (rank(layer) == least || (least == gray && rank(layer) == any)))
+            found.other_colors.push_back(layer.name);
     return best;
 }
 
@@ -290,11 +294,10 @@ Result<> Finder::find_color(FrameChannels& found) const {
         return layer == layers_.end() ? nullptr : &*layer;
     };
     const Layer* layer = find_named_color(found);
-    if (layer != nullptr) {
+    if (layer != nullptr && layer->has("rgb")) {
         found.color = layer->set("rgba");
         return {};
     }
-    layer = first([](const Layer& l) { return l.is_plain() && l.has("y") && !l.has("x"); });
     if (layer == nullptr && part_count_ == 1)
         layer = first([&](const Layer& l) {
             const std::size_t count = parts_[l.part].channels.size() - (l.has("a") ? 1 : 0);
@@ -412,10 +415,14 @@ Result<FrameChannels> Finder::find() {
             return user_error(fmt::format("a mapping of \"{}\"; color, depth, normals and velocity can be mapped",
                                           one_printable_line(what)));
     // As `info` calls what is found without a mapping.
+    std::vector<std::string> known;
     std::erase_if(names_, [&](const auto& mapping) {
         const auto& [what, name] = mapping;
-        return name == what && !lone_channel(name) &&
-               std::ranges::none_of(layers_, [&](const Layer& l) { return l.name == name || l.prefix == name; });
+        const bool is_known =
+            name == what && !lone_channel(name) &&
+            std::ranges::none_of(layers_, [&](const Layer& l) { return l.name == name || l.prefix == name; });
+        if (is_known) known.push_back(name);
+        return is_known;
     });
     FrameChannels found;
     if (auto done = choose_view(found); !done) return failure(std::move(done));
@@ -428,6 +435,10 @@ Result<FrameChannels> Finder::find() {
     if (auto done = find_normals(found); !done) return failure(std::move(done));
     if (auto done = find_velocity(found); !done) return failure(std::move(done));
     find_masks(found);
+    for (const std::string& what : known)
+        if ((what == "depth" && !found.depth) || (what == "normals" && !found.normals) ||
+            (what == "velocity" && !found.velocity))
+            return unknown(what, what);
     return found;
 }
 

@@ -55,7 +55,7 @@ inline constexpr std::string_view no_layer = "none";
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
 
 /// Of several layers in colour the first of these is it: R, G, B of a file of one part; Composite; Combined; rgba; rgb;
-/// C; beauty; default; R, G, B of the first part; the first layer with colour. Red, green, blue and alpha in full are
+/// C; beauty; default; R, G, B of the first part; Y alone; the first layer with colour. Red, green, blue and alpha in full are
 /// R, G, B, A. Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a stereo
 /// picture; empty: the first that has a colour. An error names the channels that were found and what was looked for,
 /// without the file name.

@@ -141,6 +141,38 @@ TEST_F(ImageFrame, UnknownNameGivesTheNearest) {
     EXPECT_FALSE(add_mapping(options.names, "depth="));
 }
 
+// What `info` calls what it found is asked for; where it found nothing, that is no reason to go on without.
+TEST_F(ImageFrame, AMappingToALayerThatIsNotThereIsRefused) {
+    test::store_floats(file("a.exr"), {"R", "G", "B"}, 1, std::vector<float>{1, 2, 3});
+    for (const std::string what : {"depth", "normals", "velocity"}) {
+        FrameOptions options;
+        ASSERT_TRUE(add_mapping(options.names, what + "=" + what));
+        const Result<FrameFile> frame = read_frame(file("a.exr"), options);
+        ASSERT_FALSE(frame) << what;
+        EXPECT_NE(frame.error().text.find("has no channels \"" + what + "\" for " + what), std::string::npos)
+            << frame.error().text;
+    }
+    FrameOptions options;
+    ASSERT_TRUE(add_mapping(options.names, "color=color"));
+    EXPECT_TRUE(read_frame(file("a.exr"), options));
+}
+
+TEST_F(ImageFrame, PlainGrayGoesBeforeLayersOfOtherNames) {
+    test::store_floats(file("a.exr"), {"Y", "light.R", "light.G", "light.B"}, 1, std::vector<float>{0.9F, 1, 2, 3});
+    const Result<FrameFile> frame = read_frame(file("a.exr"));
+    ASSERT_TRUE(frame) << frame.error().text;
+    EXPECT_EQ(std::vector(frame->color.pixels.begin(), frame->color.pixels.begin() + 3),
+              (std::vector<float>{0.9F, 0.9F, 0.9F}));
+    ASSERT_EQ(frame->warnings.size(), 1U);
+    EXPECT_NE(frame->warnings[0].find("the color is Y, although light might be it as well"), std::string::npos)
+        << frame->warnings[0];
+    test::store_floats(file("b.exr"), {"Y", "beauty.R", "beauty.G", "beauty.B"}, 1, std::vector<float>{0.9F, 1, 2, 3});
+    EXPECT_EQ(read_frame(file("b.exr"))->color.pixels[0], 1) << "a name that says so goes before";
+    test::store_floats(file("c.exr"), {"X", "Y", "Z", "light.R", "light.G", "light.B"}, 1,
+                       std::vector<float>{0.9F, 0.9F, 0.9F, 1, 2, 3});
+    EXPECT_EQ(read_frame(file("c.exr"))->color.pixels[0], 1) << "Y beside X is none";
+}
+
 /// Two pixels of colour, and of a layer.
 FrameFile stored(const std::filesystem::path& path, const std::string& layer, std::array<float, 2> values,
                  const FrameOptions& options = {}, const std::function<void(Imf::Header&)>& change = {}) {

@@ -459,7 +459,9 @@ Result<FrameFile> FrameReader::read() {
     if (!found_.other_colors.empty())
         frame_.warnings.push_back(
             fmt::format("the color is {}, although {} might be it as well; --map color=NAME says which",
-                        one_printable_line(found_.color.prefix.empty() ? "R, G, B" : found_.color.prefix),
+                        !found_.color.prefix.empty() ? one_printable_line(found_.color.prefix)
+                        : found_.is_gray             ? "Y"
+                                                     : "R, G, B",
                         one_printable_line(fmt::format("{}", fmt::join(found_.other_colors, ", ")))));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
     frame_.attributes = decoder_.attributes(found_.color.part);
