@@ -67,6 +67,10 @@ bool is_near(const Chromaticity& a, const Chromaticity& b) {
 
 }  // namespace
 
+bool is_near(const Chromaticities& a, const Chromaticities& b) {
+    return is_near(a.red, b.red) && is_near(a.green, b.green) && is_near(a.blue, b.blue) && is_near(a.white, b.white);
+}
+
 std::array<double, 3> multiply(const ColorMatrix& m, const std::array<double, 3>& v) {
     return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
             m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
@@ -85,9 +89,7 @@ std::optional<ColorMatrix> conversion(const Chromaticities& from, const Chromati
 
 std::optional<ColorMatrix> to_rec709(const Chromaticities& from) {
     const Chromaticities rec709;
-    if (is_near(from.red, rec709.red) && is_near(from.green, rec709.green) && is_near(from.blue, rec709.blue) &&
-        is_near(from.white, rec709.white))
-        return ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    if (is_near(from, rec709)) return ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
     if (!is_near(from.red, {1, 0}) || !is_near(from.green, {0, 1}) || !is_near(from.blue, {0, 0}))
         return conversion(from, rec709);
     const auto tristimulus = to_xyz(from);

@@ -22,6 +22,9 @@ struct Chromaticities {
     [[nodiscard]] bool operator==(const Chromaticities&) const = default;
 };
 
+/// Within 1e-4: files keep them in 32 bits, and round them to four digits.
+[[nodiscard]] bool is_near(const Chromaticities& a, const Chromaticities& b);
+
 /// Row-major, applied to a column of red, green, blue.
 using ColorMatrix = std::array<double, 9>;
 

@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 
 #include <algorithm>
 #include <bit>
@@ -138,6 +139,23 @@ TEST_F(CliKeepLayers, HalvesStayHalvesAndShadowsStayBehind) {
         const bool is_normal = part.channels[c].find("N.") != std::string::npos;
         EXPECT_EQ(part.kinds[c], is_normal ? SampleKind::Half : SampleKind::Float) << part.channels[c];
     }
+}
+
+// ACEScg: the picture is of Rec. 709, and what is kept beside it keeps its numbers.
+TEST_F(CliKeepLayers, PrimariesThatAreNotThePicturesAreTold) {
+    const auto store = [&](const std::string& layer, const Imf::Chromaticities& primaries) {
+        test::store_floats(path("ap1.exr"), {"R", "G", "B", layer}, width, std::vector<float>(width * height * 4, 0.5f),
+                           [&](Imf::Header& header) { Imf::addChromaticities(header, primaries); });
+        return run({"develop", path("ap1.exr"), "--keep-layers", "-o", path("out.exr")});
+    };
+    const Imf::Chromaticities ap1({0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f});
+    const Outcome told = store("diffuse.R", ap1);
+    EXPECT_EQ(told.code, 0);
+    EXPECT_NE(told.err.find("kept layers in color have the frame's primaries, and the file says the picture's"),
+              std::string::npos)
+        << told.err;
+    EXPECT_EQ(store("id", ap1).err, "") << "no colour";
+    EXPECT_EQ(store("diffuse.R", Imf::Chromaticities()).err, "") << "the picture's own";
 }
 
 TEST_F(CliKeepLayers, WhereThereIsNoPlaceTheyAreRefused) {

@@ -53,6 +53,15 @@ std::optional<double> Decoder::number(std::size_t part, const std::string& attri
     return values.size() == 1 ? std::optional(values.front()) : std::nullopt;
 }
 
+std::optional<Chromaticities> Decoder::primaries(std::size_t part) const {
+    const std::vector<float> values = numbers(part, "chromaticities");
+    if (values.size() != 8) return std::nullopt;
+    return Chromaticities{.red = {values[0], values[1]},
+                          .green = {values[2], values[3]},
+                          .blue = {values[4], values[5]},
+                          .white = {values[6], values[7]}};
+}
+
 bool Decoder::has_attribute_starting(std::size_t part, std::string_view start) const {
     const std::vector<std::string> names = state_->opened.source->attributes(part);
     return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(start); });

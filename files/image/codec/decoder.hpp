@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/primaries.hpp"
 #include "image/color/file_color.hpp"
 #include "image/exr/attributes.hpp"
 #include "image/picture/picture_source.hpp"
@@ -41,6 +42,8 @@ class Decoder {
     [[nodiscard]] std::vector<float> numbers(std::size_t part, const std::string& attribute) const;
     /// An attribute that is one number, in all its bits.
     [[nodiscard]] std::optional<double> number(std::size_t part, const std::string& attribute) const;
+    /// What the attribute "chromaticities" of a part says.
+    [[nodiscard]] std::optional<Chromaticities> primaries(std::size_t part) const;
     [[nodiscard]] bool has_attribute_starting(std::size_t part, std::string_view start) const;
     /// What a file that is made from this part may say of itself, too; null for files that are not OpenEXR.
     [[nodiscard]] std::shared_ptr<const ExrAttributes> attributes(std::size_t part) const;

@@ -120,12 +120,8 @@ ColorCoding FrameReader::coding_of_color() {
         return color.coding.value_or(ColorCoding{});
     }
     ColorCoding coding{.curve = {}};
-    const std::vector<float> values = decoder_.numbers(found_.color.part, "chromaticities");
-    if (values.size() == 8) {
-        coding.primaries = {.red = {values[0], values[1]},
-                            .green = {values[2], values[3]},
-                            .blue = {values[4], values[5]},
-                            .white = {values[6], values[7]}};
+    if (const std::optional<Chromaticities> primaries = decoder_.primaries(found_.color.part)) {
+        coding.primaries = *primaries;
         return coding;
     }
     const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "image/codec/decoder.hpp"
 
@@ -145,6 +146,13 @@ Result<KeptLayers> read_kept_layers(const std::filesystem::path& path, const Fra
     KeptLayers layers;
     if (Result<> done = Reader(*decoder, *found, options.is_depth_inverse, layers).run(); !done)
         return refuse(done.error());
+    const auto is_red = [](const KeptLayers::Channel& channel) {
+        const std::string name = lower(channel.name.substr(channel.name.rfind('.') + 1));
+        return name == "r" || name == "red";
+    };
+    if (std::ranges::any_of(layers.parts,
+                            [&](const KeptLayers::Part& part) { return std::ranges::any_of(part.channels, is_red); }))
+        layers.primaries = decoder->primaries(found->color.part);
     return layers;
 }
 

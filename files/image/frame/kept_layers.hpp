@@ -7,9 +7,11 @@
 #include <darkroom/result.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/primaries.hpp"
 #include "decoders/file_kind.hpp"
 #include "image/exr/attributes.hpp"
 #include "image/frame/frame_file.hpp"
@@ -33,7 +35,8 @@ struct KeptLayers {
     std::vector<Part> parts;              ///< in the order of the file
     std::size_t color_part = 0;           ///< of `parts`: where the picture goes; its window is the display window
     std::string color_prefix;             ///< of the picture's channels: "right.", where the file has eyes as channels
-    std::vector<std::string> warnings;    ///< of what cannot go along; one line each, without the file name
+    std::optional<Chromaticities> primaries;  ///< of layers in colour, where there are any and the file says
+    std::vector<std::string> warnings;        ///< of what cannot go along; one line each, without the file name
 };
 
 /// Every channel of an image file but its colour (as find_channels has it) and the shadows of its lights. What the

@@ -42,12 +42,9 @@ Result<ComparablePicture> read_comparable(LayerFile& file) {
     const SampleKind kind = part.kinds[layer->channels.front()];
     if (kind != SampleKind::Half && kind != SampleKind::Float) return out;
     out.encoding = PictureEncoding::SceneLinear;
-    const std::vector<float> values = file.decoder().numbers(layer->part, "chromaticities");
-    if (values.size() != 8 || samples->channels < 3) return out;
-    const std::optional<ColorMatrix> matrix = to_rec709({.red = {values[0], values[1]},
-                                                         .green = {values[2], values[3]},
-                                                         .blue = {values[4], values[5]},
-                                                         .white = {values[6], values[7]}});
+    const std::optional<Chromaticities> primaries = file.decoder().primaries(layer->part);
+    if (!primaries || samples->channels < 3) return out;
+    const std::optional<ColorMatrix> matrix = to_rec709(*primaries);
     if (matrix && *matrix != ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) convert(out.picture, *matrix);
     return out;
 }

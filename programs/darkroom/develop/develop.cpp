@@ -10,6 +10,7 @@
 
 #include "core/text/param_text.hpp"
 #include "develop/developer.hpp"
+#include "image/color/output_space.hpp"
 #include "image/frame/sequence.hpp"
 #include "image/picture/alpha.hpp"
 #include "image/picture/resize.hpp"
@@ -441,11 +442,25 @@ class Develop {
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
     }
 
+    /// A file of OpenEXR has one set of primaries for all of its channels.
+    void warn_of_primaries(std::size_t i, const darkroom::Chromaticities& of_layers,
+                           const darkroom::WriteOptions& options) const {
+        const darkroom::Result<darkroom::SampleKind> samples = darkroom::sample_kind(job_.steps[i].output, options);
+        const std::optional<darkroom::ColorState> color =
+            samples ? darkroom::color_of(options, *samples) : std::nullopt;
+        const darkroom::Chromaticities of_picture =
+            color ? darkroom::chromaticities_of(color->primaries) : darkroom::Chromaticities();
+        if (!darkroom::is_near(of_layers, of_picture))
+            warn(fmt::format("{}: kept layers in color have the frame's primaries, and the file says the picture's",
+                             shown(i)));
+    }
+
     /// Read again, so that only those that are being encoded are in memory.
     Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
         Result<darkroom::KeptLayers> layers = darkroom::read_kept_layers(job_.steps[i].input, job_.frame);
         if (!layers) return failure(std::move(layers));
         for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        if (layers->primaries) warn_of_primaries(i, *layers->primaries, options);
         options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
         return {};
     }
