@@ -331,6 +331,9 @@ TEST_F(CliViewer, RefusesWhatItCannotShow) {
     expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--range", "wide"}, 1, "standard or high");
     expect_refused({"play", scenes_folder + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
     const std::string scene = scenes_folder + "dungeon.scene.toml";
+    // Warnings name the flags of frames.
+    expect_refused({"play", source_folder + std::string("/samples/window.exr"), "--eye", "both"}, 1, "--eye both: allowed is one view");
+    expect_refused({"edit", source_folder + std::string("/samples/window.exr"), "--normals-space", "eye"}, 1, "allowed is world, view");
     expect_refused({"play", scene, "--frame-time", "0"}, 1, "--frame-time = 0: allowed is [0.1, 1000] ms");
     expect_refused({"play", scene, "--frame-time", "16", "--full-size"}, 1, "--full-size draws every pixel");
     expect_refused({"play", scene, "--frame-time", "16", "--frames", "2"}, 1, "frames that are counted");

@@ -89,9 +89,12 @@ Result<> read_subject(ViewerJob& job, const ViewFlags& flags, const std::vector<
     Result<std::vector<darkroom::NumberedFile>> files = darkroom::expand_inputs(inputs);
     if (!files) return failure(std::move(files));
     job.frames = std::move(*files);
-    for (const std::string& map : flags.maps)
-        if (Result<> added = darkroom::add_mapping(job.frame_desc.options.names, map); !added) return added;
-    job.frame_desc.options.camera_file = flags.camera;
+    const std::vector<std::string> eyes = flags.frame.eyes();
+    if (eyes.size() > 1) return user_error("--eye both: allowed is one view at a time");
+    Result<darkroom::FrameOptions> options = flags.frame.options({}, eyes.front());
+    if (!options) return failure(std::move(options));
+    job.frame_desc.options = std::move(*options);
+    if (orbit->field_of_view) job.frame_desc.options.vertical_field_of_view = *orbit->field_of_view;
     job.frame_desc.options.keeps_halves = true;
     return {};
 }

@@ -11,7 +11,7 @@ namespace app {
 
 using darkroom::Result;
 
-void FrameFlags::add_to(CommandFlags command) {
+void FrameFlags::add_to(CommandFlags command, bool is_window) {
     const std::string group = "The frame";
     command.add_option("--map", maps_, "Layers: depth=NAME, normals=, velocity=, color=; NAME none: without it")
         .type_name("LAYER=NAME")
@@ -24,7 +24,10 @@ void FrameFlags::add_to(CommandFlags command) {
         .group(group);
     depth_scale_.add_to(command, "Metres for each unit of the depth").type_name("N").group(group);
     command.add_flag("--depth-inverse", is_depth_inverse_, "The depth is 1 / distance, as Nuke's is").group(group);
-    fov_.add_to(command, "Vertical field of view, where the file has no projection").type_name("DEGREES").group(group);
+    if (!is_window)
+        fov_.add_to(command, "Vertical field of view, where the file has no projection")
+            .type_name("DEGREES")
+            .group(group);
     command.add_option("--camera", camera_, "A camera file (TOML); camera.####.toml of several frames: one for each")
         .type_name("FILE")
         .group(group);
@@ -38,8 +41,8 @@ void FrameFlags::add_to(CommandFlags command) {
         .group(group);
     command
         .add_option("--input-space", input_space_,
-                    fmt::format("Colour space of the file's numbers, whatever the file says: {}, or a space of --ocio",
-                                darkroom::input_space_names()))
+                    fmt::format("Colour space of the file's numbers, whatever the file says: {}{}",
+                                darkroom::input_space_names(), is_window ? "" : ", or a space of --ocio"))
         .type_name("SPACE")
         .group(group);
 }

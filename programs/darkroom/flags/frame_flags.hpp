@@ -16,7 +16,8 @@ namespace app {
 /// --map, --eye, --overscan, --depth-scale, --depth-inverse, --fov, --camera, --normals-space, --up, --input-space.
 class FrameFlags {
   public:
-    void add_to(CommandFlags command);
+    /// `is_window`: of a command without --ocio, whose --fov is among the flags of scenes.
+    void add_to(CommandFlags command, bool is_window = false);
     /// `configuration`: that --input-space names a space of; empty: none. `eye`: one of eyes().
     [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options(const std::string& configuration,
                                                                    const std::string& eye) const;

@@ -68,14 +68,7 @@ void ViewFlags::add_to(CommandFlags command, bool edits, std::span<const darkroo
         .group(group);
     command.add_flag("--help-keys", asks_for_keys, "Prints what keys and mouse do").group(group);
     if (is_edit) command.add_flag("--auto-orbit", turns, "The camera goes round by itself").group(group);
-    const std::string frame_group = "A stored frame";
-    command
-        .add_option("--map", maps,
-                    "Name of a layer in the file: depth=NAME, normals=PREFIX, velocity=PREFIX, color=PREFIX")
-        .repeated()
-        .type_name("LAYER=NAME")
-        .group(frame_group);
-    command.add_option("--camera", camera, "A camera file (TOML)").type_name("FILE").group(frame_group);
+    frame.add_to(command, true);
     drawn.add_to(command, is_edit ? edit_extent : play_extent, usual_msaa, group);
     device.add_to(command);
     look.add_to(command, true, named);

@@ -9,6 +9,7 @@
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/flags/device_flags.hpp"
 #include "programs/darkroom/flags/flags.hpp"
+#include "programs/darkroom/flags/frame_flags.hpp"
 #include "programs/darkroom/flags/look_flags.hpp"
 #include "programs/darkroom/flags/number_flag.hpp"
 #include "programs/darkroom/render/scene_flags.hpp"
@@ -23,10 +24,10 @@ struct ViewFlags {
     bool is_edit = false;
     std::vector<std::string> inputs;
     SceneFlags drawn;
+    FrameFlags frame;
     LookFlags look;
     DeviceFlags device;
-    std::string presentation = "vsync", range = "high", screenshot, window_screenshot, camera;
-    std::vector<std::string> maps;
+    std::string presentation = "vsync", range = "high", screenshot, window_screenshot;
     bool is_fullscreen = false, turns = false, is_paused = false, is_full_size = false, asks_for_keys = false,
          obeys_input = false;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
