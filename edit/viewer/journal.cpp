@@ -9,6 +9,7 @@
 
 #include "core/files.hpp"
 #include "core/own_file.hpp"
+#include "core/text/param_text.hpp"
 
 namespace app {
 
@@ -41,6 +42,13 @@ bool is_being_written(std::string_view text) {
     return process != getpid() && is_at_work(process);
 }
 
+/// Is it the journal of another window over the look?
+bool is_of_another(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error) && darkroom::check_own_file(file) &&
+           is_being_written(text_of(file).value_or(""));
+}
+
 }  // namespace
 
 std::filesystem::path Journal::file_of(const darkroom::edit::LookDocument& document) const {
@@ -55,9 +63,8 @@ std::optional<std::string> Journal::left_behind(const darkroom::edit::LookDocume
     if (file.empty() || !std::filesystem::exists(file, error) || !darkroom::check_own_file(file)) return std::nullopt;
     const Result<std::string> text = text_of(file);
     if (!text || !text->starts_with(first_line)) return std::nullopt;
-    // Two windows over one look: the journal is the other one's.
-    is_held_ = true;
     if (is_being_written(*text)) return std::nullopt;
+    is_held_ = true;
     return text->substr(std::min(text->find('\n'), text->size() - 1) + 1);
 }
 
@@ -69,13 +76,20 @@ void Journal::begin(const darkroom::edit::LookDocument& document) {
 
 Result<> Journal::follow(const darkroom::edit::LookDocument& document) {
     const Clock::time_point now = Clock::now();
-    if (is_held_ || has_failed_ || now - looked_at_ < between_writes) return {};
+    if (is_held_ || has_failed_ || now - looked_at_ < between_writes) return state_;
     looked_at_ = now;
+    return state_ = keep(document);
+}
+
+Result<> Journal::keep(const darkroom::edit::LookDocument& document) {
     const std::filesystem::path file = file_of(document);
     if (!document.is_changed() || file != written_) end();
     if (!document.is_changed() || file.empty() || (version_ == document.version() && !written_.empty())) return {};
     const Result<std::string> text = document.unsaved_text();
     if (!text) return {};  // saving says why
+    if (is_of_another(file))
+        return darkroom::user_error(fmt::format("{}: unsaved edits are not kept while another window keeps its own",
+                                                darkroom::printable(file.string())));
     std::error_code error;
     if (document.file().empty()) std::filesystem::create_directories(folder_, error);
     const std::string all = fmt::format("{}{}\n{}", first_line, getpid(), *text);
@@ -91,7 +105,7 @@ Result<> Journal::follow(const darkroom::edit::LookDocument& document) {
 void Journal::end() {
     if (written_.empty()) return;
     std::error_code error;
-    std::filesystem::remove(written_, error);
+    if (!is_of_another(written_)) std::filesystem::remove(written_, error);
     written_.clear();
 }
 

@@ -304,5 +304,27 @@ TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {
     leave();
 }
 
+// This test is the other one, which began after the window.
+TEST_F(CliViewerTasks, UnsavedEditsOfAnotherWindowAreLeftAlone) {
+    const std::string look = write("my.toml", "[post_process]\nfog_density = 0.05\n");
+    const std::filesystem::path journal = path(".my.toml.unsaved");
+    start({"edit", frame("frame.exr"), "--look", look, "--size", "1280x720"});
+    write(".my.toml.unsaved", fmt::format("# Unsaved edits of process {}\n[post_process]\n", getpid()));
+    const std::string left = content(journal);
+    press("F8", "F8 fog: off");
+    EXPECT_TRUE(wait_until([&] { return complained().find("while another window keeps its own") != std::string::npos; },
+                           30))
+        << said() << complained();
+    EXPECT_EQ(content(journal), left);
+    std::filesystem::remove(journal);
+    ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(journal); }, 30)) << "the other one has ended";
+    EXPECT_NE(content(journal), left);
+    write(".my.toml.unsaved", left);
+    press("ctrl+z", "undo: F8 fog: off");
+    press("alt+F4");
+    EXPECT_EQ(viewer().wait(std::chrono::seconds(60)), 0);
+    EXPECT_EQ(content(journal), left);
+}
+
 }  // namespace
 }  // namespace darkroom::test
