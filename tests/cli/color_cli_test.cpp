@@ -220,6 +220,27 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
                  path("none.png") + ": half samples hold light, not a view of a display; .png .jpg .tif hold one");
 }
 
+TEST_F(CliColor, AViewOfWhatIsTransparentIsThatOfItsColorAndGlowsAsBrightAsItLooks) {
+    FrameFile frame;
+    frame.color = Picture(32, 18);
+    frame.has_alpha = true;
+    frame.samples = SampleKind::Float;
+    const auto made_of = [&](const std::array<float, 4>& color, const char* alpha) {
+        for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = color[i % 4];
+        EXPECT_TRUE(write_frame(path("frame.exr"), frame));
+        EXPECT_EQ(develop({"--ocio", path("config.ocio"), "--display", "screen", "--bits", "16", alpha}, "a.png").code,
+                  0);
+        return picture("a.png");
+    };
+    const Picture plain = made_of({0.2F, 0.1F, 0.05F, 0.5F}, "--alpha");
+    for (std::size_t c = 0; c < 4; ++c)
+        EXPECT_NEAR(plain.pixels[c], c < 3 ? std::sqrt(0.4 / std::pow(2.0, c)) : 0.5, 2.0 / 65535) << c;
+    EXPECT_EQ(made_of({0.2F, 0.1F, 0.05F, 0.5F}, "--alpha=glow").pixels, plain.pixels) << "nothing glows";
+    const Picture glow = made_of({0.16F, 0.04F, 0, 0}, "--alpha=glow");
+    for (std::size_t c = 0; c < 4; ++c)
+        EXPECT_NEAR(glow.pixels[c], (std::array{1.0, 0.5, 0.0, 0.4})[c], 2.0 / 65535) << c;
+}
+
 TEST_F(CliColor, AnotherRatioIsFittedInUnlessItIsSaid) {
     const auto size_of = [&](const std::string& size) {
         EXPECT_EQ(develop({"--size", size}, "out.png").code, 0);

@@ -94,7 +94,7 @@ TEST_F(CliStream, SamplesAreThoseOfTheFilesInTheirOrder) {
         ASSERT_EQ(bytes.size(), codes.size());
         for (std::size_t i = 0; i < codes.size(); ++i) ASSERT_EQ(code(bytes[i]), codes[i]) << i;
     }
-    for (const char* const alpha : {"", "--alpha"}) {
+    for (const char* const alpha : {"", "--alpha", "--alpha=glow"}) {
         const std::vector<double> wide = codes_of_files(65535, fmt::format("--bits 16 {}", alpha));
         const std::string bytes =
             streamed(fmt::format("darkroom develop 'f.####.exr' -o - --format rgba64le {}", alpha));

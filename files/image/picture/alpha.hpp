@@ -17,8 +17,8 @@ void associate(Picture& picture);
 /// Code values that were multiplied by alpha, four a pixel, become straight; where alpha is 0, black.
 void make_straight(std::span<float> rgba);
 
-/// For straight files, out of encoded colours that are multiplied: glow over what is transparent gets as much alpha as
-/// it is bright, so that it is still there over another picture.
+/// For straight files, out of straight code values: glow over what is transparent, which where alpha is 0 stands as it
+/// adds to another picture, gets as much alpha as it is bright, so that it is still there over that one.
 void make_alpha_of_glow(std::span<float> rgba);
 
 }  // namespace darkroom

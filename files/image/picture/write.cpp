@@ -20,6 +20,7 @@
 #include "image/codec/codecs.hpp"
 #include "image/codec/png_write.hpp"
 #include "image/exr/write.hpp"
+#include "image/picture/alpha.hpp"
 
 namespace darkroom {
 namespace {
@@ -322,10 +323,12 @@ Result<> write_picture(const std::filesystem::path& path, const Picture& picture
         return desc->kind == SampleKind::Integer8 ? write(integers<std::uint8_t>(encoded, desc->channels))
                                                   : write(integers<std::uint16_t>(encoded, desc->channels));
     };
-    if (options.view) {
-        Picture viewed = picture;
-        apply(*options.view, viewed);
-        return write_integers(viewed);
+    const bool makes_alpha = options.has_alpha_of_glow && is_integer(desc->kind);
+    if (options.view || makes_alpha) {
+        Picture made = picture;
+        if (options.view) apply(*options.view, made);
+        if (makes_alpha) make_alpha_of_glow(made.pixels);
+        return write_integers(made);
     }
     if (is_integer(desc->kind)) return write_integers(picture);
     // Radiance: no negative values, and a shared exponent of at most 2^127.

@@ -27,7 +27,7 @@ struct WriteOptions {
     /// False: the file has no alpha channel, which is opaque everywhere. Colours of floats are given multiplied by it,
     /// and OpenEXR and TIFF say so; those of integers are not, as PNG wants it.
     bool alpha = false;
-    bool has_alpha_of_glow = false;  ///< see make_alpha_of_glow; what is written has it already
+    bool has_alpha_of_glow = false;  ///< of files of integers: see make_alpha_of_glow
     std::optional<int> quality;      ///< JPEG: 1 to 100, not given: 95
     std::string chroma;              ///< JPEG: see EncodeDesc
     /// PNG: a level, 0 to 12; TIFF: none, packbits, lzw, zip; OpenEXR: none, rle, zips, zip, piz, pxr24, b44, b44a,

@@ -106,7 +106,8 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
     if (out != stream_name) return user_error(fmt::format("--format {}: works for -o -, not for files", *format_));
     const StreamDesc desc{.format = static_cast<darkroom::VideoFormat>(name - format_names.begin()),
                           .rate = darkroom::frame_rate(frames_per_second),
-                          .has_alpha = has_alpha()};
+                          .has_alpha = has_alpha(),
+                          .has_alpha_of_glow = alpha_ == "glow"};
     for (const auto& [is_given, flag] :
          {std::pair(bits_.has_value(), "--bits"), std::pair(space_.is_given(), "--output-space"),
           std::pair(!compression_.empty(), "--compression"), std::pair(quality_.is_given(), "--quality"),

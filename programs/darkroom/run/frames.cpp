@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text/param_text.hpp"
-#include "image/picture/alpha.hpp"
 #include "report.hpp"
 
 namespace app {
@@ -217,7 +216,7 @@ darkroom::ColorState with_alpha(const std::optional<darkroom::ColorState>& color
                                 const darkroom::WriteOptions& options) {
     const bool is_light = target == darkroom::DevelopTarget::SceneLinear;
     darkroom::ColorState out = color.value_or(is_light ? darkroom::ColorState{} : darkroom::srgb_color);
-    out.is_associated = (is_light || options.has_alpha_of_glow) && !options.view;
+    out.is_associated = is_light && !options.view;
     return out;
 }
 
@@ -337,9 +336,6 @@ Result<> write(const std::filesystem::path& path, DevelopedPicture picture, cons
     out.width = width;
     out.height = height;
     out.pixels = std::move(picture.pixels);
-    if (const auto samples = darkroom::sample_kind(path, options);
-        options.has_alpha_of_glow && samples && darkroom::is_integer(*samples))
-        darkroom::make_alpha_of_glow(out.pixels);
     if (const std::uint64_t count = darkroom::clamped_by_compression(path, out, options); count > 0)
         warn(fmt::format("{}: {} pixels are brighter than {} can hold, and are clamped",
                          darkroom::printable(path.string()), count, options.compression));

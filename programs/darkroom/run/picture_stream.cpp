@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "image/picture/alpha.hpp"
 #include "report.hpp"
 
 namespace app {
@@ -33,7 +34,8 @@ PictureStream::PictureStream(const StreamDesc& desc) : desc_(desc) {
     survive_closed_pipes();
 }
 
-std::vector<std::byte> PictureStream::pack(const darkroom::DevelopedPicture& picture) const {
+std::vector<std::byte> PictureStream::pack(darkroom::DevelopedPicture picture) const {
+    if (desc_.has_alpha_of_glow) darkroom::make_alpha_of_glow(picture.pixels);
     return desc_.format == VideoFormat::Rgba64le ? darkroom::video_frame_16(picture.pixels, desc_.has_alpha)
                                                  : darkroom::video_frame(desc_.format, picture.bytes);
 }

@@ -18,7 +18,7 @@ inline constexpr std::string_view stream_name = "-";
 struct StreamDesc {
     darkroom::VideoFormat format = darkroom::VideoFormat::Y4m;
     darkroom::FrameRate rate;
-    bool has_alpha = false;
+    bool has_alpha = false, has_alpha_of_glow = false;  ///< as of WriteOptions
 };
 
 /// Pictures are packed by any thread, and written in their order by one at a time.
@@ -26,7 +26,7 @@ class PictureStream {
   public:
     /// Standard output is the stream's alone from here on, and a reader that ends is an error, not a signal.
     explicit PictureStream(const StreamDesc& desc);
-    [[nodiscard]] std::vector<std::byte> pack(const darkroom::DevelopedPicture& picture) const;
+    [[nodiscard]] std::vector<std::byte> pack(darkroom::DevelopedPicture picture) const;
     /// Errors: the picture has another size than the first, in the words of `name`; nobody reads any more.
     [[nodiscard]] darkroom::Result<> write(std::span<const std::byte> packed, VkExtent2D extent, std::string_view name);
 
