@@ -223,6 +223,17 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     EXPECT_EQ(farm(shot).out, "all 12 pictures are there, nothing is submitted\n");
 }
 
+TEST_F(FarmFiles, StatusFindsPicturesOfNumbersBelowZeroByEitherName) {
+    write_program("sbatch", "echo 17");
+    for (const char* const name : {"neg.-0002", "neg.-001", "neg.0000"}) write(std::string(name) + ".exr", "");
+    ASSERT_EQ(farm("slurm 'neg.####.exr' -o out/").code, 0);
+    EXPECT_EQ(farm("status out/neg.farm").out,
+              "out/neg.farm: 3 frames: 0 done, 0 failed, 3 missing\n  missing: -2-0\n");
+    for (const char* const name : {"neg.-0002", "neg.-001", "neg.0000"})
+        write(std::string("out/") + name + ".png", "made");
+    EXPECT_EQ(farm("status out/neg.farm").out, "out/neg.farm: 3 frames: 3 done, 0 failed, 0 missing\n");
+}
+
 TEST_F(FarmFiles, AFolderIsMadeWhereAsked) {
     EXPECT_EQ(farm("slurm 'shot.####.exr' -o new/a/ --mkdir --dry-run").code, 0);
     EXPECT_TRUE(fs::is_directory(path("new/a")));

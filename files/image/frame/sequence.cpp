@@ -37,9 +37,9 @@ struct Pattern {
         return fmt::format("{}{:0{}}{}", before, number, width, after);
     }
     /// Below 0 some count the sign among the digits, as printf does, and others write it before them.
-    [[nodiscard]] bool names(long long number, std::string_view file) const {
-        return file == name(number) ||
-               (number < 0 && file == fmt::format("{}{:0{}}{}", before, number, width + 1, after));
+    [[nodiscard]] std::vector<std::string> names(long long number) const {
+        if (number >= 0) return {name(number)};
+        return {name(number), fmt::format("{}{:0{}}{}", before, number, width + 1, after)};
     }
 };
 
@@ -158,12 +158,18 @@ Result<> expand(std::string input, std::vector<Found>& files) {
         if (!name.starts_with(pattern.before) || !name.ends_with(pattern.after)) continue;
         const auto number = whole_number(std::string_view(name).substr(
             pattern.before.size(), name.size() - pattern.before.size() - pattern.after.size()));
-        if (!number || (*frames && !(*frames)->contains(*number)) || !pattern.names(*number, name)) continue;
+        if (!number || (*frames && !(*frames)->contains(*number))) continue;
+        const std::vector<std::string> names = pattern.names(*number);
+        if (std::ranges::find(names, name) == names.end()) continue;
         found.emplace_back(*number, path.has_parent_path() ? folder / name : fs::path(name));
     }
     if (code) return user_error(fmt::format("{}: cannot list the folder: {}", given, code.message()));
     if (found.empty()) return user_error(fmt::format("{}: no file matches", given));
     std::sort(found.begin(), found.end());
+    const auto twice = std::ranges::adjacent_find(found, {}, &std::pair<long long, fs::path>::first);
+    if (twice != found.end())
+        return user_error(fmt::format("{}: {} and {} are both frame {}", given, twice->second.filename().string(),
+                                      std::next(twice)->second.filename().string(), twice->first));
     for (auto& [number, file] : found) files.push_back({std::move(file), number});
     return {};
 }
@@ -175,6 +181,14 @@ bool has_number_pattern(const fs::path& path) { return parse(path.filename().str
 fs::path numbered(const fs::path& pattern, long long number) {
     const auto parsed = parse(pattern.filename().string());
     return parsed ? pattern.parent_path() / parsed->name(number) : pattern;
+}
+
+std::vector<fs::path> spellings(const fs::path& pattern, long long number) {
+    const auto parsed = parse(pattern.filename().string());
+    if (!parsed) return {pattern};
+    std::vector<fs::path> out;
+    for (const std::string& name : parsed->names(number)) out.push_back(pattern.parent_path() / name);
+    return out;
 }
 
 std::optional<long long> frame_number(const fs::path& path) {

@@ -76,6 +76,10 @@ TEST_F(ImageSequence, NumbersBelowZeroAreFoundWithTheirSignBeforeOrAmongTheDigit
     for (const char* const name : {"b.-0002.exr", "b.-001.exr", "b.0000.exr", "b.-3.exr"}) put(file(name), "");
     EXPECT_EQ(numbers_of({"b.####.exr"}), (Numbers{-2, -1, 0}));
     EXPECT_EQ(numbers_of({"b.%04d.exr"}), (Numbers{-2, -1, 0}));
+    put(file("b.-002.exr"), "");
+    const auto twice = expand_inputs(std::vector<std::string>{file("b.####.exr").string()});
+    ASSERT_FALSE(twice);
+    EXPECT_EQ(twice.error().text, file("b.####.exr").string() + ": b.-0002.exr and b.-002.exr are both frame -2");
 }
 
 TEST(ImageSequenceNames, NumbersGoIntoPatterns) {

@@ -187,8 +187,10 @@ FrameNumbers without(const FrameNumbers& numbers, const FrameNumbers& others) {
     return out;
 }
 
-fs::path FarmNames::picture(long long number) const {
-    return output_path(darkroom::numbered(input, number), number, output, is_folder);
+std::vector<fs::path> FarmNames::pictures(long long number) const {
+    std::vector<fs::path> out = darkroom::spellings(input, number);
+    for (fs::path& path : out) path = output_path(path, number, output, is_folder);
+    return out;
 }
 
 Json json_of(const ChunkRecord& record) {

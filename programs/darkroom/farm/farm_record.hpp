@@ -35,7 +35,8 @@ struct FarmNames {
     std::string input, output;
     bool is_folder = false;  ///< the output is one
 
-    [[nodiscard]] std::filesystem::path picture(long long number) const;
+    /// One for each name that its input may have; of the usual one first.
+    [[nodiscard]] std::vector<std::filesystem::path> pictures(long long number) const;
 };
 
 struct FarmJob {

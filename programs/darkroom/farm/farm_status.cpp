@@ -52,9 +52,12 @@ FrameNumbers numbers_there(const fs::path& folder, const std::set<std::string>& 
                            const FrameNumbers& frames, const FrameNumbers& written_down) {
     FrameNumbers out;
     for (const long long number : frames) {
-        const fs::path name = names.picture(number).filename();
-        if (files.contains(name.string()) && (written_down.contains(number) || is_there(folder.parent_path() / name)))
-            out.insert(out.end(), number);
+        const bool is_made = std::ranges::any_of(names.pictures(number), [&](const fs::path& picture) {
+            const fs::path name = picture.filename();
+            return files.contains(name.string()) &&
+                   (written_down.contains(number) || is_there(folder.parent_path() / name));
+        });
+        if (is_made) out.insert(out.end(), number);
     }
     return out;
 }

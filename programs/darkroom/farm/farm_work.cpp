@@ -138,7 +138,7 @@ Result<FarmWork> FarmFlags::work() const {
     const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));
     FarmNames names{.input = input_, .output = out_, .is_folder = is_output_folder(out_)};
-    const fs::path records = farm_folder(names.picture(0), names.picture(9));
+    const fs::path records = farm_folder(names.pictures(0).front(), names.pictures(9).front());
     return FarmWork{.frames = std::move(*frames),
                     .names = std::move(names),
                     .folder = records,
