@@ -115,7 +115,7 @@ void Viewer::open_subject(const std::filesystem::path& file) {
                 out.scene = std::move(*made);
                 return out;
             }
-            out.files = {{.path = file}};
+            out.files = {{.path = file, .number = darkroom::frame_number(file).value_or(0)}};
             Result<std::unique_ptr<FrameSource>> made = FrameSource::create(*device_, out.files, frame);
             if (!made) return failure(std::move(made));
             out.frames = std::move(*made);

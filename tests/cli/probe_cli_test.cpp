@@ -166,5 +166,30 @@ TEST_F(CliProbe, WrongPlacesAreRefused) {
     expect_refused(many, 1, "--at: 300 pixels of a stack of 4 entries: allowed are at most 203");
 }
 
+TEST_F(CliProbe, ANumberedCameraIsThatOfTheFrame) {
+    std::filesystem::copy(path("frame.exr"), path("f.0007.exr"));
+    write("camera.0007.toml", "fov = 20\n");
+    const auto probe = [&](const std::string& camera) {
+        return run({"probe", path("f.0007.exr"), "--camera", path(camera), "--ssao-intensity", "1", "--at", "12,4"});
+    };
+    const Outcome numbered = probe("camera.####.toml"), named = probe("camera.0007.toml");
+    EXPECT_EQ(numbered.code, 0) << numbered.err;
+    EXPECT_EQ(numbered.out, named.out);
+}
+
+// What is wrong with one is told before any picture is made.
+TEST_F(CliProbe, AllNumberedCamerasAreReadBeforeAnyWork) {
+    for (const char* const name : {"f.0001.exr", "f.0002.exr"}) std::filesystem::copy(path("frame.exr"), path(name));
+    write("camera.0001.toml", "fov = 20\n");
+    const std::vector<std::string> command{"develop", path("f.####.exr"),  "--camera", path("camera.####.toml"), "-q",
+                                           "-o",      path("out.####.png")};
+    expect_refused(command, 1, "camera.0002.toml");
+    write("camera.0002.toml", "fov = 1000\n");
+    expect_refused(command, 1, "camera.0002.toml");
+    write("camera.0002.toml", "fov = 30\n");
+    EXPECT_EQ(run(command).code, 0);
+    EXPECT_TRUE(std::filesystem::exists(path("out.0002.png")));
+}
+
 }  // namespace
 }  // namespace darkroom

@@ -45,9 +45,7 @@ void FrameSource::start() {
 
 // Whatever a file makes a decoder do, the thread that reads goes on.
 Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const try {
-    darkroom::FrameOptions options = desc_.options;
-    options.camera_file = darkroom::numbered(options.camera_file, files_[number].number);
-    Result<darkroom::FrameFile> file = darkroom::read_frame(files_[number].path, options);
+    Result<darkroom::FrameFile> file = read_frame(files_[number], desc_.options);
     if (!file) return failure(std::move(file));
     auto out = std::make_shared<Decoded>();
     out->number = number;

@@ -267,6 +267,12 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     if (!moved_pre_roll) return failure(moved_pre_roll.error());
     if (Result<> done = add_steps(options, std::max(*pre_roll, *moved_pre_roll), job); !done)
         return failure(std::move(done));
+    // What is wrong with one is told before any work, unless only its own frame is to fail.
+    if (darkroom::has_number_pattern(job.frame.camera_file) && !options.run.keeps_going)
+        for (const Step& step : job.steps)
+            if (const auto camera = darkroom::read_camera(darkroom::numbered(job.frame.camera_file, step.number));
+                !camera)
+                return failure(camera.error());
     // One file is decoded by all threads, several by one each.
     if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
     return job;
@@ -335,9 +341,7 @@ class Develop {
 
     Result<> decode(std::size_t i) {
         const Step& step = job_.steps[i];
-        darkroom::FrameOptions options = job_.frame;
-        options.camera_file = darkroom::numbered(options.camera_file, step.number);
-        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, options);
+        Result<darkroom::FrameFile> frame = read_frame({step.input, step.number}, job_.frame);
         if (!frame) return failure(std::move(frame));
         if (Result<> done = make_composer(); !done) return done;
         const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame->color.width, frame->color.height})

@@ -147,7 +147,8 @@ class Probe {
         if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)
             return failure(needs.error());
         frame->keeps_halves = true;
-        Result<darkroom::FrameFile> file = darkroom::read_frame(options_.input, *frame);
+        const long long number = darkroom::frame_number(options_.input).value_or(1);
+        Result<darkroom::FrameFile> file = read_frame({options_.input, number}, *frame);
         if (!file) return failure(std::move(file));
         darkroom::NewSize new_size{file->color.width, file->color.height};
         if (!options_.size.empty()) {
@@ -163,9 +164,7 @@ class Probe {
         tell_of_assumed_view(file_, shown);
         lights_ = take_lights(file_);
         input_ = develop_input(file_, lights_);
-        if (!file_.frame_index)
-            input_.frame_index =
-                static_cast<std::uint64_t>(std::max(0LL, darkroom::frame_number(options_.input).value_or(1)));
+        if (!file_.frame_index) input_.frame_index = static_cast<std::uint64_t>(std::max(0LL, number));
         return options_.time.read_to(input_.time);
     }
 

@@ -87,6 +87,11 @@ std::optional<darkroom::Plane<channels>> plane(VkExtent2D extent, std::vector<fl
 
 Camera as_stored(const Camera& camera) { return camera_of(stored_camera(camera)); }
 
+Result<darkroom::FrameFile> read_frame(const darkroom::NumberedFile& file, darkroom::FrameOptions options) {
+    options.camera_file = darkroom::numbered(options.camera_file, file.number);
+    return darkroom::read_frame(file.path, options);
+}
+
 std::vector<ReferenceLight> take_lights(darkroom::FrameFile& frame) {
     std::vector<ReferenceLight> lights;
     for (darkroom::FrameLight& stored : frame.lights) {

@@ -7,12 +7,16 @@
 #include "develop/developer.hpp"
 #include "develop/reference_chain.hpp"
 #include "image/frame/frame_file.hpp"
+#include "image/frame/sequence.hpp"
 #include "image/picture/picture.hpp"
 #include "image/picture/write.hpp"
 #include "timeline.hpp"
 
 namespace app {
 
+/// With the camera file of its number, where that is one of several.
+[[nodiscard]] darkroom::Result<darkroom::FrameFile> read_frame(const darkroom::NumberedFile& file,
+                                                               darkroom::FrameOptions options);
 /// The frame's lights, with the depths of their cascades moved out of it. Where those stayed in the file, a light casts
 /// no shadow.
 [[nodiscard]] std::vector<darkroom::ReferenceLight> take_lights(darkroom::FrameFile& frame);
