@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 
 namespace darkroom {
 namespace {
+
+namespace fs = std::filesystem;
 
 using test::content;
 using test::Outcome;
@@ -155,6 +158,38 @@ TEST_F(CliStream, ScenesAreStreamedToo) {
     EXPECT_EQ(bytes.size(), 3U * 8 * 6 * 3) << "what is said goes to standard error";
     EXPECT_NE(content(path("said")).find("Loaded scene"), std::string::npos);
     EXPECT_NE(content(path("said")).find("together"), std::string::npos);
+}
+
+TEST_F(CliStream, FramesThatAreMissingAreHeldOrRefused) {
+    fs::copy(path("f.0005.exr"), path("f.0006.exr"));
+    for (const char* const name : {"f.0003.exr", "f.0004.exr"}) fs::remove(path(name));
+    const auto stream = [&](const std::string& flags) {
+        return run_lines("darkroom develop 'f.####.exr' -q -o - --format rgb24 --size 24x16 " + flags);
+    };
+    const auto picture_of = [&](int number) { return stream(fmt::format("--frames {}", number)).out; };
+    const std::string one = picture_of(1), two = picture_of(2), five = picture_of(5), six = picture_of(6);
+    ASSERT_NE(two, five);
+    const Outcome between = stream("--frames 1-4,6");
+    EXPECT_EQ(between.out, one + two + two + two + six) << "frame 5 is there, and nobody asked for it";
+    EXPECT_NE(between.err.find("2 frames are missing before f.0006.exr"), std::string::npos) << between.err;
+    const Outcome begin = stream("--frames 3-6"), end = stream("--frames 5-9");
+    EXPECT_EQ(begin.out, five + five + five + six);
+    EXPECT_NE(begin.err.find("2 frames are missing before f.0005.exr"), std::string::npos) << begin.err;
+    EXPECT_EQ(end.out, five + six + six + six + six);
+    EXPECT_NE(end.err.find("3 frames are missing behind f.0006.exr"), std::string::npos) << end.err;
+    for (const auto& [flags, line] : {std::pair("--frames 1-4,6", "2 frames are missing before f.0006.exr"),
+                                      std::pair("--frames 3-6", "2 frames are missing before f.0005.exr"),
+                                      std::pair("--frames 5-9", "3 frames are missing behind f.0006.exr")}) {
+        const Outcome refused = stream(fmt::format("--gaps stop {}", flags));
+        EXPECT_EQ(refused.code, 1) << flags;
+        EXPECT_EQ(refused.out, "") << flags;
+        EXPECT_EQ(refused.err, fmt::format("darkroom: --gaps stop: {}\n", line));
+    }
+    fs::copy(path("f.0005.exr"), path("f.20261129.exr"));
+    const Outcome stray = run_lines("timeout 20 darkroom develop 'f.####.exr' -q -o - --format rgb24 | head -c 99999");
+    EXPECT_EQ(stray.out, "");
+    EXPECT_EQ(stray.err,
+              "darkroom: --gaps hold: 20261122 frames are missing before f.20261129.exr, at most 100000 are held\n");
 }
 
 TEST_F(CliStream, AReaderThatEndsIsOneLine) {

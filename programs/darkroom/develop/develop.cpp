@@ -69,7 +69,7 @@ struct Step {
     std::filesystem::path input, output;
     long long number = 0;
     bool is_written = false;
-    long long missing = 0;  ///< frames that are asked for and not there, between the one before and this
+    long long missing = 0;  ///< frames that are asked for and not there, between the written one before and this
 };
 
 /// Everything that can be known before a frame is read.
@@ -88,7 +88,8 @@ struct Job {
     std::optional<darkroom::NewSize> size;
     std::optional<double> time, frames_per_second;
     std::optional<StreamDesc> stream;
-    long long step = 1;  ///< from one input's number to the next, where none is missing
+    long long missing_at_end = 0;  ///< frames that are asked for and not there, behind all that are
+    long long step = 1;            ///< from one input's number to the next, where none is missing
 
     [[nodiscard]] bool is_asked_for(long long number) const { return !frames || frames->contains(number); }
 };
@@ -98,27 +99,49 @@ darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
         fmt::format("--keep-layers: {} holds no layers; .exr does", darkroom::printable(output.string())));
 }
 
-/// How many frames that are asked for are missing before an input.
-long long missing_before(const Job& job, std::size_t place) {
-    if (place == 0) return 0;
-    long long out = 0;
-    const long long before = job.inputs[place - 1].number, last = job.inputs[place].number;
-    if (!job.frames) return std::max(0LL, (last - before) / job.step - 1);
-    for (long long number = before + job.step; number < last; number += job.step) out += job.is_asked_for(number);
-    return out;
+/// How many frames that are asked for are missing before each picture, and behind the last. Those that stand in another
+/// order than that of their numbers have no gaps.
+void count_missing(Job& job) {
+    if (!std::ranges::is_sorted(job.steps, {}, &Step::number)) return;
+    const std::vector<long long> asked_for = job.frames ? job.frames->numbers() : std::vector<long long>();
+    const auto missing = [&](std::optional<long long> before, std::optional<long long> behind) {
+        if (!job.frames) return before && behind ? std::max(0LL, (*behind - *before) / job.step - 1) : 0LL;
+        const auto first = before ? std::ranges::upper_bound(asked_for, *before) : asked_for.begin();
+        const auto last = behind ? std::ranges::lower_bound(asked_for, *behind) : asked_for.end();
+        const long long place = before ? *before : *behind;
+        return static_cast<long long>(
+            std::count_if(first, last, [&](long long number) { return (number - place) % job.step == 0; }));
+    };
+    std::optional<long long> before;
+    for (Step& step : job.steps) {
+        if (!step.is_written) continue;
+        step.missing = missing(before, step.number);
+        before = step.number;
+    }
+    if (before) job.missing_at_end = missing(before, std::nullopt);
 }
 
 /// Streams go on at their pace over frames that are missing, or do not begin.
-Result<> check_gaps(const Options& options, const Job& job) {
+Result<> check_gaps(const Options& options, Job& job) {
     if (!options.gaps.empty() && options.gaps != "hold" && options.gaps != "stop")
         return user_error(fmt::format("--gaps {}: allowed is hold, stop", darkroom::printable(options.gaps)));
     if (!options.gaps.empty() && !job.stream) return user_error("--gaps: works for -o -, not for files");
-    if (options.gaps != "stop") return {};
+    if (!job.stream) return {};
+    count_missing(job);
+    long long held = 0;
+    const auto check = [&](long long missing, std::string_view where, const Step& step) -> Result<> {
+        const std::string shown = darkroom::printable(step.input.string());
+        if (missing > 0 && options.gaps == "stop")
+            return user_error(fmt::format("--gaps stop: {} frames are missing {} {}", missing, where, shown));
+        constexpr auto most = static_cast<long long>(most_frames);
+        held += std::min(missing, most + 1);
+        if (held <= most) return {};
+        return user_error(
+            fmt::format("--gaps hold: {} frames are missing {} {}, at most {} are held", missing, where, shown, most));
+    };
     for (const Step& step : job.steps)
-        if (step.is_written && step.missing > 0)
-            return user_error(fmt::format("--gaps stop: {} frames are missing before {}", step.missing,
-                                          darkroom::printable(step.input.string())));
-    return {};
+        if (Result<> done = check(step.missing, "before", step); !done) return done;
+    return job.steps.empty() ? Result<>() : check(job.missing_at_end, "behind", job.steps.back());
 }
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
@@ -159,7 +182,6 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
             job.steps.push_back({i, inputs[i].path, (*outputs)[i], inputs[i].number, is_written});
     }
     std::ranges::reverse(job.steps);
-    for (Step& step : job.steps) step.missing = missing_before(job, step.place);
     return check_gaps(options, job);
 }
 
@@ -471,17 +493,25 @@ class Develop {
 
     Result<> deliver(std::size_t i) {
         if (!stream_ || !job_.steps[i].is_written) return {};
-        const long long missing = job_.steps[i].missing;
-        if (missing > 0 && !last_packed_.empty()) {
-            warn(
-                fmt::format("{} frames are missing before {}: the stream holds the one before; --gaps stop refuses "
-                            "such sequences",
-                            missing, shown(i)));
-            for (long long held = 0; held < missing; ++held)
-                if (Result<> done = stream_->write(last_packed_, items_[i].extent, shown(i)); !done) return done;
-        }
-        if (Result<> done = stream_->write(items_[i].packed, items_[i].extent, shown(i)); !done) return done;
+        const std::vector<std::byte>& packed = items_[i].packed;
+        // Before the first one there is none to hold but itself.
+        if (Result<> done = hold(i, last_packed_.empty() ? packed : last_packed_, job_.steps[i].missing, "before");
+            !done)
+            return done;
+        if (Result<> done = stream_->write(packed, items_[i].extent, shown(i)); !done) return done;
+        if (i + 1 == job_.steps.size()) return hold(i, packed, job_.missing_at_end, "behind");
         last_packed_ = has_gaps_ ? std::move(items_[i].packed) : std::vector<std::byte>();
+        return {};
+    }
+
+    /// In place of frames that are missing beside a step.
+    Result<> hold(std::size_t i, std::span<const std::byte> packed, long long missing, std::string_view where) {
+        if (missing > 0)
+            warn(fmt::format(
+                "{} frames are missing {} {}: the stream holds the nearest; --gaps stop refuses such sequences",
+                missing, where, shown(i)));
+        for (long long held = 0; held < missing; ++held)
+            if (Result<> done = stream_->write(packed, items_[i].extent, shown(i)); !done) return done;
         return {};
     }
 
@@ -557,7 +587,7 @@ static Command add_develop(CommandFlags program, std::span<const darkroom::LookE
     command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
     command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");
-    command.add_option("--gaps", options->gaps, "Of -o -, where one is missing: the one before, or the end")
+    command.add_option("--gaps", options->gaps, "Of -o -, where one is missing: the nearest, or the end")
         .type_name("hold|stop")
         .default_str("hold");
     options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");
