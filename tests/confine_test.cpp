@@ -96,9 +96,12 @@ TEST_F(Confined, WithoutFoldersItOpensNothing) {
 // The kernel refuses what confines a decoder; a picture of a stranger's is not decoded then.
 TEST_F(Confined, AProgramWhoseDecodersCannotBeConfinedSaysSo) {
     ASSERT_TRUE(write_picture(file("in.png"), Picture(4, 4)));
-    const auto develop = [&](const char* flag) {
-        const std::string program = std::string(binary_folder) + "/bin/darkroom", in = file("in.png"),
-                          out = file("out.exr"), said = file("said");
+    const auto run = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), std::string(binary_folder) + "/bin/darkroom");
+        const std::string said = file("said");
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
         const pid_t child = ::fork();
         if (child == 0) {
             scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
@@ -107,22 +110,32 @@ TEST_F(Confined, AProgramWhoseDecodersCannotBeConfinedSaysSo) {
                              scmp_arg_cmp{0, SCMP_CMP_EQ, PR_SET_SECCOMP, 0});
             if (seccomp_load(filter) != 0) ::_exit(99);
             ::dup2(::open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), STDERR_FILENO);
-            ::execl(program.c_str(), "darkroom", "develop", in.c_str(), "--reference", "-q", "-o", out.c_str(), flag,
-                    nullptr);
+            ::execv(arguments.front(), arguments.data());
             ::_exit(98);
         }
         int status = 0;
         EXPECT_EQ(::waitpid(child, &status, 0), child);
         return std::pair(WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(file("said")));
     };
-    const auto [code, said] = develop(nullptr);
+    const std::vector<std::string> develop{"develop", file("in.png"), "--reference", "-q", "-o", file("out.exr")};
+    const auto [code, said] = run(develop);
     if (code == 99) GTEST_SKIP() << "this kernel has no seccomp";
     EXPECT_EQ(code, 2) << said;
     EXPECT_NE(said.find("cannot be confined"), std::string::npos) << said;
     EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
     EXPECT_FALSE(std::filesystem::exists(file("out.exr")));
-    EXPECT_EQ(develop("--allow-unconfined").first, 0) << content(file("said"));
+    std::vector<std::string> allowed = develop;
+    allowed.emplace_back("--allow-unconfined");
+    EXPECT_EQ(run(allowed).first, 0) << content(file("said"));
     EXPECT_TRUE(std::filesystem::exists(file("out.exr")));
+    // A task of a farm hands it to what it starts.
+    std::filesystem::copy(file("in.png"), file("in.0001.png"));
+    EXPECT_EQ(run({"farm", "task", file("in.####.png"), "-o", file("out.####.png"), "--frames", "1",
+                   "--allow-unconfined", "--", "--reference"})
+                  .first,
+              0)
+        << content(file("said"));
+    EXPECT_TRUE(std::filesystem::exists(file("out.0001.png")));
 }
 
 TEST(ConfinedProgram, AProcessAtWorkEndsWithIt) {

@@ -49,6 +49,8 @@ Failure ConfinedProcess::failed(const std::string& why) const {
 
 void ConfinedProcess::allow_unconfined(bool is_allowed) { may_be_unconfined = is_allowed; }
 
+bool ConfinedProcess::allows_unconfined() { return may_be_unconfined; }
+
 bool ConfinedProcess::is_running() const {
     siginfo_t ended{};
     return process_ >= 0 && waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&

@@ -28,6 +28,7 @@ class ConfinedProcess {
     [[nodiscard]] Result<> start(std::span<const std::string> arguments = {});
     /// For all that start from now on: one whose kernel cannot hold its calls back goes on without, instead of ending.
     static void allow_unconfined(bool is_allowed);
+    [[nodiscard]] static bool allows_unconfined();
     /// One that has ended since it was last asked, by whatever hand, is not.
     [[nodiscard]] bool is_running() const;
     /// Of all its memory, in address space; nothing under a sanitizer, whose shadow alone is terabytes.

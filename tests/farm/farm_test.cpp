@@ -84,6 +84,9 @@ TEST_F(FarmFiles, AScriptIsAnArrayJobOfWhatIsMissing) {
                                       "{} farm task --frames \"$chunk\" 'shot.####.exr' -o out/ -- --exposure 2\n",
                                       fs::canonical(path(".")).string(), fs::canonical(program).string()));
     EXPECT_FALSE(fs::exists(path("out/shot.farm"))) << "a dry run writes nothing";
+    EXPECT_NE(farm("slurm 'shot.####.exr' -o out/ --allow-unconfined --dry-run")
+                  .out.find(" farm task --frames \"$chunk\" --allow-unconfined 'shot.####.exr' -o out/\n"),
+              std::string::npos);
     const std::string container = "apptainer exec --nv --bind /mnt/shots /mnt/shots/darkroom.sif darkroom";
     const Outcome inside = farm("slurm 'shot.####.exr' -o out/ --dry-run --program '" + container + "'");
     EXPECT_NE(inside.out.find("\n" + container + " farm task "), std::string::npos) << inside.out;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include "confined/process.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
@@ -102,8 +103,9 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
     const std::string folder = shell_quoted(work.folder.string());
     return fmt::format(
         "#!/bin/bash\n{}set -e\ncd -- {}\nmkdir -p -- {}\nchunks=({})\nchunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
-        "exec >>{}/\"$chunk.log\" 2>&1\n{} farm task --frames \"$chunk\" {}\n",
-        *head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program, shell_quoted(options.work.task()));
+        "exec >>{}/\"$chunk.log\" 2>&1\n{} farm task --frames \"$chunk\"{} {}\n",
+        *head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program,
+        darkroom::ConfinedProcess::allows_unconfined() ? " --allow-unconfined" : "", shell_quoted(options.work.task()));
 }
 
 bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos; }

@@ -11,6 +11,7 @@
 #include <memory>
 #include <thread>
 
+#include "confined/process.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
 #include "farm_process.hpp"
@@ -100,6 +101,7 @@ class Task {
         std::vector<std::string> arguments{fs::read_symlink("/proc/self/exe", error).string()};
         for (std::string& argument : flags_.command(flags_.frames())) arguments.push_back(std::move(argument));
         if (current_voice() != Voice::Usual) arguments.emplace_back(current_voice() == Voice::Quiet ? "-q" : "-v");
+        if (darkroom::ConfinedProcess::allows_unconfined()) arguments.emplace_back("--allow-unconfined");
         // Where this process is killed, nobody sends a signal on: that one asks to get it.
         ::setenv(task_of_farm, std::to_string(::getpid()).c_str(), 1);
         const Result<ProcessOutcome> outcome = run_process(arguments, ProcessOutput::Told);
