@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What adding does to a flat table, and what an effect is known to need.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "edit/document.hpp"
 #include "edit/edits.hpp"
 #include "edit/effect_uses.hpp"
 #include "looks/look_parts.hpp"
@@ -81,6 +83,32 @@ TEST_F(EditStack, UsesAreWhatBuildDeclares) {
         if (const EffectInfo* const effect = find_effect(name)) {
             EXPECT_FALSE(uses_of(*effect).has_passes) << name;
         }
+}
+
+// A look after another is no error though a pulse of each moves the same entry, and the files they name are still
+// there.
+TEST_F(EditStack, AnotherLookKeepsItsFilesAndTakesTheSamePlaces) {
+    const std::string pulse =
+        "[[pulse]]\nevent = \"hit\"\nparameter = \"bloom.intensity\"\namount = 1.0\n"
+        "[ui]\ndocument = \"../hud/visor.svg\"\n";
+    LookDocument document;
+    for (const char* const intensity : {"0.2", "0.3"}) {
+        const Result<> done = document.edit("look", [&](Look& look) -> Result<> {
+            Result<Look> read =
+                parse_look(fmt::format("[post_process]\nbloom_intensity = {}\n{}", intensity, pulse), "a.toml");
+            if (!read) return failure(std::move(read));
+            take_look(look, std::move(*read), "/shipped/looks", "/home/art");
+            return {};
+        });
+        ASSERT_TRUE(done) << done.error().text;
+        ASSERT_TRUE(document.look().ui);
+        EXPECT_EQ(document.look().ui->document, "../../shipped/hud/visor.svg");
+    }
+    EXPECT_EQ(document.look().pulses.size(), 1U);
+    document.undo();
+    EXPECT_TRUE(document.can_undo()) << "each was a step";
+    document.undo();
+    EXPECT_FALSE(document.is_changed());
 }
 
 }  // namespace

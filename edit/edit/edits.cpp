@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
+#include <utility>
 
 #include "core/text/param_text.hpp"
 #include "edit/splice/restructure.hpp"
@@ -110,6 +112,34 @@ Result<> set_file(Look& look, std::string_view entry, std::string_view parameter
     if (target->row->is_amount && look.is_flat && !target->entry->is_of_ui)
         target->entry->state.enabled = !file.empty();
     return {};
+}
+
+void take_look(Look& look, Look other, const std::filesystem::path& from, const std::filesystem::path& to) {
+    const auto rename = [&](std::string& file) {
+        if (file.empty() || std::filesystem::path(file).is_absolute()) return;
+        std::error_code error;
+        const std::filesystem::path named = std::filesystem::proximate(from / file, to.empty() ? "." : to, error);
+        file = (error ? from / file : named).generic_string();
+    };
+    const std::vector<std::string> names = entry_names(look), other_names = entry_names(other);
+    for (std::size_t i = 0; i < other.entries.size(); ++i) {
+        LookEntry& entry = other.entries[i];
+        for (LookResource& resource : entry.resources) {
+            for (std::string* const wire : {&entry.input, &entry.source, &entry.second, &entry.mask})
+                if (*wire == resource.file) rename(*wire);
+            rename(resource.file);
+        }
+        rename(entry.effect_file);
+        const auto same = std::ranges::find(names, other_names[i]);
+        entry.id = same == names.end() ? 0 : look.entries[static_cast<std::size_t>(same - names.begin())].id;
+    }
+    for (LookLayer& layer : other.layers) rename(layer.file);
+    if (other.ui) {
+        rename(other.ui->document);
+        for (std::string& script : other.ui->controllers) rename(script);
+    }
+    other.shown_name = look.shown_name;
+    look = std::move(other);
 }
 
 }  // namespace darkroom::edit

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <darkroom/look.hpp>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,10 @@ Result<> set_wire(Look& look, std::string_view entry, std::string_view wire, con
 /// Gives a parameter of kind Resource a file, relative to the options' folder; an empty name takes it away.
 Result<> set_file(Look& look, std::string_view entry, std::string_view parameter, const std::string& file,
                   const LookOptions& options);
+
+/// Puts another look in its place. What that one names beside `from`, its folder, is named from `to`; entries of the
+/// same names stay the same to pulses, layers and whoever has chosen one.
+void take_look(Look& look, Look other, const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// What add_effect() without a `before` would do.
 struct Addition {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "edit/document.hpp"
+#include "edit/edits.hpp"
 #include "edit/test_random_edits.hpp"
 #include "tests/places.hpp"
 
@@ -260,6 +261,32 @@ TEST_F(DocumentHistory, WhatOthersWroteStaysOnEveryWay) {
     saved.undo();
     ASSERT_TRUE(saved.document().save());
     EXPECT_EQ(saved.text(), std::string(flat).replace(std::string(flat).find("0.20"), 4, "0.2") + "# and this\n");
+}
+
+TEST_F(DocumentHistory, LooksThatShipTakeThePlaceOfEachOtherAndAreSaved) {
+    const fs::path looks = fs::path(darkroom::test::source_folder) / "looks";
+    for (const char* const name : {"night.toml", "plain_bloom.toml", "visor.toml", "daze.toml"}) {
+        const std::string text = text_of(looks / name);
+        Saved own(text, name);
+        ASSERT_TRUE(own.is_open()) << name;
+        LookDocument& document = own.document();
+        for (const fs::directory_entry& file : fs::directory_iterator(looks)) {
+            if (file.path().extension() != ".toml") continue;
+            const Result<> taken = document.edit("look", [&](Look& look) -> Result<> {
+                Result<Look> read = read_look(file.path());
+                if (!read) return failure(std::move(read));
+                take_look(look, std::move(*read), looks, document.options().folder);
+                return {};
+            });
+            ASSERT_TRUE(taken) << name << ": " << taken.error().text;
+            // It reads what it has written.
+            const Result<> saved = document.save();
+            EXPECT_TRUE(saved) << name << ", " << file.path() << ": " << saved.error().text;
+            document.undo();
+            ASSERT_TRUE(!saved || document.save());
+            EXPECT_EQ(text_of(document.file()), text) << file.path();
+        }
+    }
 }
 
 }  // namespace

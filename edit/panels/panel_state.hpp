@@ -4,6 +4,7 @@
 
 #include <darkroom/plan.hpp>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,7 @@
 namespace darkroom::panels {
 
 struct Thumbnail;
+struct OfferedLooks;
 
 using LookChange = std::function<Result<>(Look&)>;
 
@@ -54,9 +56,10 @@ struct PanelState {
     bool is_renaming_new = false;
     std::function<Thumbnail(const EffectInfo& effect)> thumbnails{};
     std::function<std::span<const float>(std::string_view name)> numbers{};
-    int adding_frame = -1;                  ///< of ImGui: the last one in which the list of effects to add was open
+    std::shared_ptr<const OfferedLooks> looks{};
+    int adding_frame = -1;                  ///< of ImGui: the last one in which a list with pictures was open
     bool shows_numbers = false;             ///< in place of wheels and curves
-    std::string filter{};                   ///< of the list of effects to add
+    std::string filter{};                   ///< of such a list
     std::size_t add_row = 0;                ///< of that list, where the keyboard is
     std::optional<std::string> fired{};     ///< an event, by its button
     std::string wanted{};                   ///< the entry that an edit has made, to be selected
@@ -111,6 +114,8 @@ void draw_part_panel(PanelState& state);
 void draw_plan_panel(const Plan* plan, bool is_compiling);
 /// The popup that lists what can be added, while it is open.
 void draw_add_menu(PanelState& state);
+/// The popup that lists the looks that can be taken, while it is open.
+void draw_looks_menu(PanelState& state);
 /// A button that opens the popup in which a pulse, a layer or a value of one is put together. `place`: its name.
 void draw_add_mover(PanelState& state, const NewMover& what, const char* label, const char* help,
                     const std::string& place);

@@ -250,6 +250,9 @@ std::string LookPanels::selected() const {
 void LookPanels::select(std::string_view entry) { state_->select(entry); }
 
 void LookPanels::set_thumbnails(ThumbnailOf thumbnails) { state_->thumbnails = std::move(thumbnails); }
+void LookPanels::set_looks(OfferedLooks looks) {
+    state_->looks = std::make_shared<const OfferedLooks>(std::move(looks));
+}
 void LookPanels::set_numbers(NumbersOf numbers) { state_->numbers = std::move(numbers); }
 bool LookPanels::is_adding() const {
     const int passed = ImGui::GetFrameCount() - state_->adding_frame;

@@ -39,10 +39,18 @@ struct PanelState;
 /// A picture as ImGui's texture; null: it is on its way.
 struct Thumbnail {
     void* texture = nullptr;
-    float aspect = 1;  ///< width / height
+    float aspect = 1;     ///< width / height
+    std::string error{};  ///< why there will be none
 };
 /// What an effect that is added would make of the picture.
 using ThumbnailOf = std::function<Thumbnail(const EffectInfo& effect)>;
+/// Looks that can be taken in place of the one that is edited.
+struct OfferedLooks {
+    std::vector<std::filesystem::path> files;
+    std::function<Result<Look>(const std::filesystem::path& file)> read;
+    /// What it makes of the picture; asked in every frame, of those that are seen.
+    std::function<Thumbnail(const std::filesystem::path& file)> picture;
+};
 /// The numbers of a value that the host's Composer has (Composer::value); none: it has none.
 using NumbersOf = std::function<std::span<const float>(std::string_view name)>;
 
@@ -97,7 +105,8 @@ class LookPanels {
     void set_thumbnails(ThumbnailOf thumbnails);
     /// For effects that tell what they meter: asked in every frame, of the selected one.
     void set_numbers(NumbersOf numbers);
-    /// Is that list open?
+    void set_looks(OfferedLooks looks);
+    /// Is one of those lists open?
     [[nodiscard]] bool is_adding() const;
     /// Effects whose parameters have wheels and curves show lines of numbers instead.
     void show_numbers(bool shows_numbers);

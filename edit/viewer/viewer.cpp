@@ -13,6 +13,7 @@
 #include "programs/darkroom/flags/device_flags.hpp"
 #include "programs/darkroom/flags/look_flags.hpp"
 #include "programs/darkroom/run/report.hpp"
+#include "programs/darkroom/run/shipped.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
@@ -74,7 +75,10 @@ Result<> Viewer::open() {
     screen_.messages().set_folder(document_->options().folder);
     if (Result<> done = open_views(); !done) return done;
     if (EditPanels* const panels = screen_.editor()) {
-        panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(effect); });
+        panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(&effect); });
+        panels->look().set_looks({.files = shipped_looks(),
+                                  .read = [this](const std::filesystem::path& file) { return look_reader()(file); },
+                                  .picture = [this](const std::filesystem::path& file) { return thumbnail_of(file); }});
         panels->look().set_numbers([this](std::string_view name) {
             const auto& view = views_[static_cast<std::size_t>(Side::Look)];
             return view ? view->composer().value(name).numbers : std::span<const float>();

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "gpu/device/context.hpp"
+#include "programs/darkroom/run/shipped.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
@@ -103,7 +104,9 @@ void Viewer::show_thumbnails(const darkroom::window::PresentFrame& frame) {
         if (thumbnails_)
             if (Result<> done = presenter_->wait(); !done) return settle("thumbnails", done);
         thumbnails_.reset();
-        Result<std::unique_ptr<Thumbnails>> made = Thumbnails::create(*device_, source_->frame(), document_->look());
+        Result<std::unique_ptr<Thumbnails>> made = Thumbnails::create(
+            *device_, source_->frame(),
+            {.look = document_->look(), .other_looks = shipped_looks().size(), .read = look_reader()});
         settle("thumbnails", made ? Result<>() : failure(made.error()));
         has_thumbnails_ = true;
         if (!made) return;
@@ -121,10 +124,12 @@ void Viewer::show_thumbnails(const darkroom::window::PresentFrame& frame) {
     thumbnails_->record(frame.commands);
 }
 
-darkroom::panels::Thumbnail Viewer::thumbnail_of(const darkroom::EffectInfo& effect) {
+darkroom::panels::Thumbnail Viewer::thumbnail_of(const Thumbnails::Subject& subject) {
     if (!has_thumbnails_ || !thumbnails_) return {};
-    const darkroom::window::Pane* const pane = thumbnails_->of(effect);
-    return {.texture = pane != nullptr ? pane->texture() : nullptr, .aspect = thumbnails_->aspect()};
+    Thumbnails::Shown shown = thumbnails_->of(subject);
+    return {.texture = shown.pane != nullptr ? shown.pane->texture() : nullptr,
+            .aspect = thumbnails_->aspect(),
+            .error = std::move(shown.error)};
 }
 
 void Viewer::finish_seeing() {

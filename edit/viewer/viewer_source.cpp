@@ -150,10 +150,16 @@ void Viewer::take_other_picture() {
                      is_as_large ? "" : fmt::format(", {}x{}", extent.width, extent.height)));
 }
 
+std::function<Result<darkroom::Look>(const std::filesystem::path& file)> Viewer::look_reader() const {
+    return [options = job_.look_options, lens = lens()](const std::filesystem::path& file) {
+        darkroom::LookOptions own = options;
+        own.folder = file.parent_path();
+        return darkroom::read_look(file, own, lens);
+    };
+}
+
 void Viewer::take_other_look(const std::filesystem::path& look) {
-    darkroom::LookOptions options = job_.look_options;
-    options.folder = look.parent_path();
-    Result<darkroom::Look> read = darkroom::read_look(look, options, lens());
+    Result<darkroom::Look> read = look_reader()(look);
     settle("other look", read ? Result<>() : failure(read.error()));
     if (!read) return;
     if (other_picture_)

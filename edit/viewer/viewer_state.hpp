@@ -114,7 +114,7 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> read_scopes(const darkroom::window::PresentFrame& frame);
     void finish_seeing();
     void show_thumbnails(const darkroom::window::PresentFrame& frame);
-    [[nodiscard]] darkroom::panels::Thumbnail thumbnail_of(const darkroom::EffectInfo& effect);
+    [[nodiscard]] darkroom::panels::Thumbnail thumbnail_of(const Thumbnails::Subject& subject);
 
     // viewer_source.cpp
     /// Another scene, or frames, in place of those that are shown.
@@ -134,6 +134,9 @@ class Viewer {
     void open_subject(const std::filesystem::path& file);
     /// To compare with: a look, or a picture, which is read beside the frames.
     void take_other(const std::filesystem::path& file);
+    /// Of files, from any thread: for the camera as it is now.
+    [[nodiscard]] std::function<darkroom::Result<darkroom::Look>(const std::filesystem::path& file)> look_reader()
+        const;
     void take_other_look(const std::filesystem::path& look);
     void take_other_picture();
     void fire(const std::string& event);

@@ -25,8 +25,27 @@ class CliViewerTasks : public ViewerFixture {
         const auto [left, top, right, bottom] = place(name);
         return {(left + right) / 2, (top + bottom) / 2};
     }
+    /// Is there a picture beside this row of a menu?
+    [[nodiscard]] bool has_picture(const std::string& row) {
+        const auto [left, top, right, bottom] = place(row + ".picture");
+        const std::string file = fmt::format("darkroom-window-{:04}.png", ++window_shots_);
+        press("shift+F12", "stored " + file);
+        const Picture window = picture(file);
+        if (window.width < static_cast<std::uint32_t>(right)) return false;
+        float least = 1, most = 0;
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) {
+                const float green = window.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))[1];
+                least = std::min(least, green);
+                most = std::max(most, green);
+            }
+        return most - least > 0.2F;
+    }
     /// Until what was just opened is there to be typed into.
     static void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(700)); }
+
+  private:
+    int window_shots_ = 0;
 };
 
 TEST_F(CliViewerTasks, OpensASceneAndWalks) {
@@ -250,30 +269,33 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
     start({"edit", frame("frame.exr"), "--size", "1280x720"});
     click("stack/add");
     std::this_thread::sleep_for(std::chrono::seconds(1));
-    int shots = 0;
-    const auto has_picture = [&](const std::string& effect) {
-        const auto [left, top, right, bottom] = place("add/" + effect + ".picture");
-        const std::string file = fmt::format("darkroom-window-{:04}.png", ++shots);
-        press("shift+F12", "stored " + file);
-        const Picture window = picture(file);
-        if (window.width < static_cast<std::uint32_t>(right)) return false;
-        float least = 1, most = 0;
-        for (int y = top; y < bottom; ++y)
-            for (int x = left; x < right; ++x) {
-                const float green = window.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))[1];
-                least = std::min(least, green);
-                most = std::max(most, green);
-            }
-        return most - least > 0.2F;
-    };
     type("vignette");
-    EXPECT_TRUE(wait_until([&] { return has_picture("vignette"); }, 240));
+    EXPECT_TRUE(wait_until([&] { return has_picture("add/vignette"); }, 240));
     press("Escape");
     click("stack/add");
     std::this_thread::sleep_for(std::chrono::seconds(1));
     type("second picture");
-    EXPECT_TRUE(wait_until([&] { return has_picture("blend"); }, 60)) << "the scene stands in for the second";
+    EXPECT_TRUE(wait_until([&] { return has_picture("add/blend"); }, 60)) << "the scene stands in for the second";
     press("Escape");
+    leave();
+}
+
+TEST_F(CliViewerTasks, ALookThatShipsIsTakenByItsPicture) {
+    const std::string text = "[post_process]\nbloom_intensity = 0.2\n";
+    const std::string look = write("my.toml", text), stored = frame("frame.exr");
+    ASSERT_EQ(run({"develop", stored, "--look", "scene_linear", "-o", path("developed.png")}).code, 0);
+    start({"edit", stored, "--look", look, "--size", "1280x720"});
+    const Picture before = shot(), developed = picture("developed.png");
+    ASSERT_GT(difference(before, developed), 0.02);
+    click("stack/looks");
+    settle();
+    type("scene");
+    EXPECT_TRUE(wait_until([&] { return has_picture("looks/scene_linear"); }, 240));
+    press("Return");
+    EXPECT_TRUE(wait_until([&] { return difference(shot(), developed) <= 1.001 / 255; }, 60));
+    EXPECT_EQ(content(look), text) << "nothing is saved yet";
+    press("ctrl+z", "undo: look scene_linear");
+    EXPECT_TRUE(wait_until([&] { return difference(before, shot()) == 0; }, 60));
     leave();
 }
 

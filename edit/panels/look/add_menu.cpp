@@ -7,6 +7,7 @@
 #include <cfloat>
 #include <cmath>
 #include <darkroom/effect.hpp>
+#include <iterator>
 #include <map>
 
 #include "core/text/param_text.hpp"
@@ -17,6 +18,7 @@
 #include "panels/widgets/icons.hpp"
 #include "panels/widgets/imgui_versions.hpp"
 #include "panels/widgets/text_field.hpp"
+#include "panels/widgets/theme.hpp"
 #include "panels/widgets/value_widgets.hpp"
 
 namespace darkroom::panels {
@@ -41,14 +43,16 @@ const std::map<const EffectInfo*, const char*>& costs() {
     return known;
 }
 
-bool is_wanted(const EffectInfo& effect, std::string_view purpose, std::string_view filter) {
-    const auto has = [&](std::string_view text) {
-        const auto is_alike = [](char a, char b) {
-            return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-        };
-        return std::search(text.begin(), text.end(), filter.begin(), filter.end(), is_alike) != text.end();
+/// In whatever case.
+bool has(std::string_view text, std::string_view filter) {
+    const auto is_alike = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
     };
-    return filter.empty() || has(shown_name(effect.name)) || has(effect.doc) || has(purpose);
+    return std::search(text.begin(), text.end(), filter.begin(), filter.end(), is_alike) != text.end();
+}
+
+bool is_wanted(const EffectInfo& effect, std::string_view purpose, std::string_view filter) {
+    return has(shown_name(effect.name), filter) || has(effect.doc, filter) || has(purpose, filter);
 }
 
 /// Takes the result of an edit that adds, so that what was added is selected.
@@ -134,11 +138,19 @@ std::string heading_of(std::string_view purpose) {
 constexpr float picture_width = 6, picture_height = 3.4F;
 
 /// As large as it fits into its room, in the middle.
-void draw_thumbnail(PanelState& state, const EffectInfo& effect, ImVec2 corner) {
+template <class Picture>
+void draw_thumbnail(PanelState& state, const Picture& picture, ImVec2 corner, const std::string& place) {
     const float em = ImGui::GetFontSize();
     const ImVec2 room{picture_width * em, picture_height * em};
     if (!ImGui::IsRectVisible(corner, {corner.x + room.x, corner.y + room.y})) return;
-    const Thumbnail found = state.thumbnails(effect);
+    const Thumbnail found = picture();
+    if (!found.error.empty()) {
+        const float wrap = ImGui::GetContentRegionAvail().x - (picture_width + 0.5F) * em;
+        ImGui::GetWindowDrawList()->AddText(
+            ImGui::GetFont(), em, {corner.x + (picture_width + 0.5F) * em, corner.y + ImGui::GetTextLineHeight()},
+            ImGui::GetColorU32(error_color), found.error.c_str(), nullptr, wrap);
+        return;
+    }
     const ImVec2 size{std::min(room.x, room.y * found.aspect), std::min(room.y, room.x / found.aspect)};
     const ImVec2 from{std::round(corner.x + (room.x - size.x) / 2), std::round(corner.y + (room.y - size.y) / 2)};
     const ImVec2 to{from.x + size.x, from.y + size.y};
@@ -147,7 +159,7 @@ void draw_thumbnail(PanelState& state, const EffectInfo& effect, ImVec2 corner) 
         list.AddImage(found.texture, from, to);
     else
         list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg));
-    if (state.places) (*state.places)[fmt::format("add/{}.picture", effect.name)] = {from, to};
+    if (state.places) (*state.places)[place] = {from, to};
 }
 
 /// A name and what it costs, and below them the effect's sentence, as one thing to be clicked; beside them what it
@@ -164,7 +176,9 @@ bool draw_effect(PanelState& state, const EffectInfo& effect, bool is_chosen) {
     const float height = has_picture ? std::max(text, picture_height * em) : text;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool is_pressed = ImGui::Selectable("##effect", is_chosen, 0, {0, height});
-    if (has_picture) draw_thumbnail(state, effect, corner);
+    if (has_picture)
+        draw_thumbnail(
+            state, [&] { return state.thumbnails(effect); }, corner, fmt::format("add/{}.picture", effect.name));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
     const char* const cost = costs().at(&effect);
@@ -189,35 +203,98 @@ void draw_effects(PanelState& state, std::span<const Offered> wanted, bool moved
     if (wanted.empty()) ImGui::TextDisabled("No effect has this in its name, sentence or purpose.");
 }
 
-}  // namespace
-
-void draw_add_menu(PanelState& state) {
-    const float em = ImGui::GetFontSize(), width = state.thumbnails ? 30 : 24;
+/// Where it is open, the field that its letters go to has been drawn.
+bool begin_menu(PanelState& state, const char* name, const char* hint, bool has_pictures) {
+    const float em = ImGui::GetFontSize(), width = has_pictures ? 30 : 24;
     ImGui::SetNextWindowSize({width * em, std::min(36 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
-    if (!ImGui::BeginPopup("add")) return;
+    if (!ImGui::BeginPopup(name)) return false;
     state.adding_frame = ImGui::GetFrameCount();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, std::round(em / 3)});
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const std::string before = state.filter;
     // With this flag arrows are the field's, and not ImGui's, which would take the keyboard elsewhere.
-    text_field("##filter", "Search; arrows choose, Enter adds", state.filter, ImGuiInputTextFlags_CallbackHistory);
+    text_field("##filter", hint, state.filter, ImGuiInputTextFlags_CallbackHistory);
     if (state.filter != before) state.add_row = 0;
-    const auto wanted = wanted_effects(state);
+    return true;
+}
+
+void end_menu() {
+    ImGui::PopStyleVar();
+    ImGui::EndPopup();
+}
+
+/// What the keyboard does with the rows of a menu.
+struct MenuKeys {
+    bool has_moved = false, is_taken = false;
+};
+MenuKeys take_keys(PanelState& state, std::size_t rows) {
     const std::size_t row = state.add_row;
     if (is_pressed(ImGuiKey_DownArrow)) ++state.add_row;
     if (is_pressed(ImGuiKey_UpArrow) && state.add_row > 0) --state.add_row;
-    state.add_row = std::min(state.add_row, wanted.empty() ? 0 : wanted.size() - 1);
+    state.add_row = std::min(state.add_row, rows == 0 ? 0 : rows - 1);
     if (is_pressed(ImGuiKey_Escape, false)) ImGui::CloseCurrentPopup();
-    const bool is_taken = is_pressed(ImGuiKey_Enter) || is_pressed(keypad_enter);
+    return {.has_moved = row != state.add_row,
+            .is_taken = rows > 0 && (is_pressed(ImGuiKey_Enter) || is_pressed(keypad_enter))};
+}
+
+void take_look(PanelState& state, const std::filesystem::path& file) {
+    ImGui::CloseCurrentPopup();
+    state.edit(fmt::format("look {}", file.stem().string()), [&state, file](Look& look) -> Result<> {
+        Result<Look> read = state.looks->read(file);
+        if (!read) return failure(std::move(read));
+        edit::take_look(look, std::move(*read), file.parent_path(), state.document->options().folder);
+        return {};
+    });
+}
+
+/// A name beside what the look makes of the picture.
+bool draw_look(PanelState& state, const std::filesystem::path& file, bool is_chosen) {
+    const float em = ImGui::GetFontSize();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const std::string name = file.stem().string();
+    const bool is_pressed = ImGui::Selectable("##look", is_chosen, 0, {0, picture_height * em});
+    state.note(fmt::format("looks/{}", name));
+    draw_thumbnail(
+        state, [&] { return state.looks->picture(file); }, corner, fmt::format("looks/{}.picture", name));
+    ImGui::GetWindowDrawList()->AddText({corner.x + (picture_width + 0.5F) * em, corner.y},
+                                        ImGui::GetColorU32(ImGuiCol_Text), printable(name).c_str());
+    return is_pressed;
+}
+
+}  // namespace
+
+void draw_looks_menu(PanelState& state) {
+    if (state.looks == nullptr || !begin_menu(state, "looks", "Search; arrows choose, Enter takes", true)) return;
+    std::vector<std::filesystem::path> wanted;
+    std::ranges::copy_if(state.looks->files, std::back_inserter(wanted),
+                         [&](const std::filesystem::path& file) { return has(file.stem().string(), state.filter); });
+    const MenuKeys keys = take_keys(state, wanted.size());
+    ImGui::BeginChild("list");
+    const std::filesystem::path* taken = keys.is_taken ? &wanted[state.add_row] : nullptr;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (draw_look(state, wanted[i], i == state.add_row)) taken = &wanted[i];
+        if (keys.has_moved && i == state.add_row) ImGui::SetScrollHereY();
+        ImGui::PopID();
+    }
+    if (wanted.empty()) ImGui::TextDisabled("No look has this in its name.");
+    ImGui::EndChild();
+    if (taken != nullptr) take_look(state, *taken);
+    end_menu();
+}
+
+void draw_add_menu(PanelState& state) {
+    if (!begin_menu(state, "add", "Search; arrows choose, Enter adds", state.thumbnails != nullptr)) return;
+    const auto wanted = wanted_effects(state);
+    const MenuKeys keys = take_keys(state, wanted.size());
     const bool takes_files = state.document->options().allows_custom_effects;
     ImGui::BeginChild("effects", {0, takes_files ? -ImGui::GetFrameHeightWithSpacing() : 0});
-    draw_effects(state, wanted, row != state.add_row);
+    draw_effects(state, wanted, keys.has_moved);
     ImGui::EndChild();
-    if (is_taken && !wanted.empty()) add(state, *wanted[state.add_row].effect);
+    if (keys.is_taken) add(state, *wanted[state.add_row].effect);
     if (takes_files && ImGui::Button("From a GLSL file...", {-FLT_MIN, 0})) add_from_file(state);
-    ImGui::PopStyleVar();
-    ImGui::EndPopup();
+    end_menu();
 }
 
 }  // namespace darkroom::panels

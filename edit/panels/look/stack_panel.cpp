@@ -104,20 +104,35 @@ class StackList {
             ImGui::TextDisabled("Stack");
             tooltip("Effects run from top to bottom. Drag one to move it, double-click to rename it.");
         }
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - add_width());
-        if (ImGui::Button(add_text)) {
-            state_.filter.clear();
-            state_.add_row = 0;
-            ImGui::OpenPopup("add");
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - buttons_width());
+        if (state_.looks != nullptr) {
+            draw_menu_button(looks_text, "looks",
+                             "Takes another look in place of this one; undo brings this one back.");
+            ImGui::SameLine();
         }
-        state_.note("stack/add");
-        tooltip("Adds an effect at a place where it accepts the picture.");
+        draw_menu_button(add_text, "add", "Adds an effect at a place where it accepts the picture.");
         draw_add_menu(state_);
+        draw_looks_menu(state_);
         ImGui::Spacing();
     }
 
+    void draw_menu_button(const char* text, const char* menu, const char* help) {
+        if (ImGui::Button(text)) {
+            state_.filter.clear();
+            state_.add_row = 0;
+            ImGui::OpenPopup(menu);
+        }
+        state_.note(fmt::format("stack/{}", menu));
+        tooltip(help);
+    }
+
+    static constexpr const char* looks_text = "Looks";
     static constexpr const char* add_text = "+  Add";
-    static float add_width() { return ImGui::CalcTextSize(add_text).x + 2 * ImGui::GetStyle().FramePadding.x; }
+    [[nodiscard]] float buttons_width() const {
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const auto width = [&](const char* text) { return ImGui::CalcTextSize(text).x + 2 * style.FramePadding.x; };
+        return width(add_text) + (state_.looks != nullptr ? width(looks_text) + style.ItemSpacing.x : 0);
+    }
 
     /// What the flat table says of all of its effects.
     void draw_table() {
@@ -138,7 +153,7 @@ class StackList {
             "Every effect of the flat table, in its fixed order. Moving or copying one makes it a stack; of those that "
             "are off, it keeps those that were set.");
         ImGui::SameLine();
-        const float room = ImGui::GetContentRegionAvail().x - add_width() - ImGui::GetStyle().ItemSpacing.x;
+        const float room = ImGui::GetContentRegionAvail().x - buttons_width() - ImGui::GetStyle().ItemSpacing.x;
         ImGui::SetNextItemWidth(std::min(9 * ImGui::GetFontSize(), room));
         const auto present = static_cast<std::size_t>(look_.order);
         if (ImGui::BeginCombo("##order", shown_name(order_names[present]).c_str())) {

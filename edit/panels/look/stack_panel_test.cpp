@@ -253,6 +253,55 @@ TEST(PanelStack, AsksForPicturesOfEffectsThatAreSeen) {
     EXPECT_FALSE(own.panels.is_adding());
 }
 
+TEST(PanelStack, AnotherLookIsOneStep) {
+    const std::string text = "[[stack]]\neffect = \"exposure\"\n";
+    TestPanels own(stack_of_all(), tall_panel);
+    const Names before = own.names();
+    std::map<std::string, int> asked;
+    own.panels.set_looks({.files = {"shipped/broken.toml", "shipped/night.toml"},
+                          .read = [&](const std::filesystem::path& file) -> Result<Look> {
+                              if (file.stem() == "broken") return user_error("broken.toml:1:1: is no look");
+                              return parse_look(text, "night.toml");
+                          },
+                          .picture =
+                              [&](const std::filesystem::path& file) {
+                                  ++asked[file.stem().string()];
+                                  const bool is_broken = file.stem() == "broken";
+                                  return Thumbnail{.aspect = 2,
+                                                   .error = is_broken ? "broken.toml:1:1: is no look" : ""};
+                              }});
+    own.gui.frame(2);
+    EXPECT_TRUE(asked.empty());
+    own.click("stack/looks");
+    own.gui.frame(2);
+    EXPECT_TRUE(own.panels.is_adding());
+    EXPECT_EQ(asked.size(), 2U);
+    EXPECT_TRUE(own.has("looks/night.picture"));
+    EXPECT_FALSE(own.has("looks/broken.picture")) << "its line stands there instead";
+    own.click("looks/night");
+    own.gui.frame(2);
+    EXPECT_EQ(own.names(), Names{"exposure"});
+    EXPECT_FALSE(own.panels.is_adding());
+    EXPECT_TRUE(own.document.is_changed());
+    EXPECT_EQ(own.document.undo_name(), "look night");
+    own.panels.undo();
+    EXPECT_EQ(own.names(), before);
+    EXPECT_FALSE(own.document.can_undo());
+    own.gui.frame(2);
+    own.click("stack/looks");
+    own.gui.frame(2);
+    own.gui.key(ImGuiKey_Enter);
+    own.gui.frame(2);
+    EXPECT_EQ(own.names(), before) << "the first cannot be read";
+    EXPECT_FALSE(own.panels.messages().is_empty());
+    own.click("stack/looks");
+    own.gui.frame(2);
+    own.gui.key(ImGuiKey_DownArrow);
+    own.gui.key(ImGuiKey_Enter);
+    own.gui.frame(2);
+    EXPECT_EQ(own.names(), Names{"exposure"});
+}
+
 TEST(PanelStack, ArrowsAndEnterAdd) {
     TestPanels own(stack_of_all(), tall_panel);
     const std::size_t before = own.names().size();

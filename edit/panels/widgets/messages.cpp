@@ -15,8 +15,6 @@ namespace darkroom::panels {
 
 namespace {
 
-const ImVec4 error_color{0.886f, 0.357f, 0.298f, 1.0f};
-
 float text_width(float width) { return width - ImGui::GetFrameHeight() - 3 * ImGui::GetStyle().ItemSpacing.x; }
 float text_height(const std::string& text, float width) {
     const float height = ImGui::CalcTextSize(text.c_str(), nullptr, false, text_width(width)).y;

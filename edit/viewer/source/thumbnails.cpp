@@ -72,8 +72,8 @@ struct Thumbnails::Small {
     darkroom::DevelopInput input;
 };
 
-Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, Look look, darkroom::FrameReadback read)
-    : device_(device), frame_(frame), look_(std::move(look)), frame_read_(std::move(read)) {
+Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, Desc desc, darkroom::FrameReadback read)
+    : device_(device), frame_(frame), desc_(std::move(desc)), frame_read_(std::move(read)) {
     const VkExtent2D whole = frame.color.used_region().extent;
     while (whole.width / divisor_ > most_width) divisor_ *= 2;
     extent_ = {(whole.width + divisor_ - 1) / divisor_, (whole.height + divisor_ - 1) / divisor_};
@@ -83,12 +83,12 @@ Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, L
 }
 
 Result<std::unique_ptr<Thumbnails>> Thumbnails::create(darkroom::Device& device, const darkroom::Frame& frame,
-                                                       Look look) {
+                                                       Desc desc) {
     namespace gpu = darkroom::gpu;
     Result<darkroom::FrameReadback> read = darkroom::FrameReadback::create(device.context(), frame);
     if (!read) return failure(std::move(read));
-    std::unique_ptr<Thumbnails> out(new Thumbnails(device, frame, std::move(look), std::move(*read)));
-    const std::size_t count = darkroom::all_effects().size();
+    std::unique_ptr<Thumbnails> out(new Thumbnails(device, frame, std::move(desc), std::move(*read)));
+    const std::size_t count = darkroom::all_effects().size() + out->desc_.other_looks;
     const auto rows = static_cast<std::uint32_t>((count + columns - 1) / columns);
     const VkExtent3D extent{out->extent_.width * static_cast<std::uint32_t>(columns), out->extent_.height * rows, 1};
     Result<gpu::Image> atlas =
@@ -138,11 +138,11 @@ VkOffset2D Thumbnails::corner_of(std::size_t cell) const {
             static_cast<std::int32_t>(cell / columns * extent_.height)};
 }
 
-const darkroom::window::Pane* Thumbnails::of(const EffectInfo& effect) {
+Thumbnails::Shown Thumbnails::of(const Subject& subject) {
     const std::lock_guard lock(mutex_);
-    const auto found = cells_.find(&effect);
-    if (found != cells_.end()) return found->second.is_shown ? &found->second.pane : nullptr;
-    Cell& cell = cells_[&effect];
+    if (const auto found = cells_.find(subject); found != cells_.end())
+        return {.pane = found->second.is_shown ? &found->second.pane : nullptr, .error = found->second.error};
+    Cell& cell = cells_[subject];
     cell.number = cells_.size() - 1;
     cell.pane.view.image = {.image = atlas_.handle,
                             .view = atlas_.mip_views[0],
@@ -150,18 +150,19 @@ const darkroom::window::Pane* Thumbnails::of(const EffectInfo& effect) {
                             .extent = {atlas_.info.extent.width, atlas_.info.extent.height},
                             .region = {corner_of(cell.number), extent_},
                             .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    wanted_.push_back(&effect);
+    wanted_.push_back(subject);
     changed_.notify_all();
-    return nullptr;
+    return {};
 }
 
 bool Thumbnails::has_new() const {
     const std::lock_guard lock(mutex_);
-    return !made_.empty();
+    return has_failed_ || !made_.empty();
 }
 
 void Thumbnails::record(VkCommandBuffer commands) {
     const std::lock_guard lock(mutex_);
+    has_failed_ = false;
     if (made_.empty()) return;
     const darkroom::gpu::Context& context = device_.context();
     darkroom::gpu::transition(context, commands, atlas_,
@@ -169,8 +170,8 @@ void Thumbnails::record(VkCommandBuffer commands) {
                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     is_drawn_ = true;
     for (; !made_.empty(); made_.pop_front()) {
-        const auto& [effect, bytes] = made_.front();
-        Cell& cell = cells_.at(effect);
+        const auto& [subject, bytes] = made_.front();
+        Cell& cell = cells_.at(subject);
         const VkDeviceSize offset = cell.number * VkDeviceSize{4} * extent_.width * extent_.height;
         std::memcpy(staging_.memory.mapped + offset, bytes.data(), bytes.size());
         const VkOffset2D corner = corner_of(cell.number);
@@ -194,29 +195,39 @@ void Thumbnails::make_all(const std::stop_token& token) {
     darkroom::Developer developer(device_, desc);
     Look shown{};
     while (!token.stop_requested()) {
-        const EffectInfo* effect = nullptr;
+        Subject subject;
         {
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, token, [&] { return !wanted_.empty(); })) return;
-            effect = wanted_.front();
+            subject = wanted_.front();
             wanted_.pop_front();
         }
+        const EffectInfo* const* const effect = std::get_if<const EffectInfo*>(&subject);
         const auto make = [&]() -> Result<darkroom::DevelopedPicture> {
-            Result<Look> with = with_effect(look_, *effect);
+            Result<Look> with = effect != nullptr ? with_effect(desc_.look, **effect)
+                                                  : desc_.read(std::get<std::filesystem::path>(subject));
             if (!with) return failure(std::move(with));
             if (const auto followed = darkroom::follow(shown, *with, composer); !followed)
                 return failure(followed.error());
             shown = std::move(*with);
             if (const auto plan = composer.compile(darkroom::compile_desc_for(device_, small.input, desc)); !plan)
                 return failure(plan.error());
-            return developer.develop(composer, small.input);
+            Result<darkroom::DevelopedPicture> made = developer.develop(composer, small.input);
+            if (made && (made->extent.width != extent_.width || made->extent.height != extent_.height))
+                return darkroom::user_error(fmt::format("its picture has {}x{} pixels where the frame has {}x{}",
+                                                        made->extent.width, made->extent.height, extent_.width,
+                                                        extent_.height));
+            return made;
         };
         Result<darkroom::DevelopedPicture> picture = make();
         const std::lock_guard lock(mutex_);
-        if (!picture)
-            error_ = fmt::format("the picture of {}: {}", effect->name, picture.error().text);
-        else if (picture->extent.width == extent_.width && picture->extent.height == extent_.height)
-            made_.emplace_back(effect, std::move(picture->bytes));
+        if (picture) {
+            made_.emplace_back(subject, std::move(picture->bytes));
+            continue;
+        }
+        has_failed_ = true;
+        cells_.at(subject).error = picture.error().text;
+        if (effect != nullptr) error_ = fmt::format("the picture of {}: {}", (*effect)->name, picture.error().text);
     }
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <system_error>
-#include <vector>
 
 #include "core/system/module.hpp"
 #include "core/text/param_text.hpp"
@@ -23,6 +22,16 @@ fs::path shipped_file(const fs::path& name) {
     return {};
 }
 
+std::vector<fs::path> shipped_looks() {
+    std::error_code error;
+    std::vector<fs::path> out;
+    for (fs::directory_iterator file(shipped_file("looks/default.toml").parent_path(), error), end;
+         !error && file != end; file.increment(error))
+        if (file->path().extension() == ".toml") out.push_back(file->path());
+    std::ranges::sort(out);
+    return out;
+}
+
 std::string find_shipped_look(std::string& name) {
     std::error_code error;
     if (name.empty() || name.find_first_of("/.\\") != std::string::npos || fs::exists(name, error)) return {};
@@ -31,10 +40,7 @@ std::string find_shipped_look(std::string& name) {
         return {};
     }
     std::vector<std::string> names;
-    for (fs::directory_iterator file(shipped_file("looks/default.toml").parent_path(), error), end;
-         !error && file != end; file.increment(error))
-        if (file->path().extension() == ".toml") names.push_back(file->path().stem().string());
-    std::ranges::sort(names);
+    for (const fs::path& file : shipped_looks()) names.push_back(file.stem().string());
     return fmt::format("{}: no such file, and no look that ships has this name{}", darkroom::printable(name),
                        darkroom::suggestion(name, names));
 }
