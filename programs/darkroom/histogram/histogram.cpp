@@ -29,7 +29,7 @@ constexpr std::array percents{1, 5, 25, 50, 75, 95, 99};
 struct Light {
     std::vector<double> above_zero;  ///< sorted
     std::uint64_t pixels = 0, black = 0, above_white = 0, transparent = 0;
-    std::uint64_t not_numbers = 0;  ///< samples of the file; reading made them 0 and the largest half
+    std::uint64_t not_numbers = 0;  ///< in the file; reading made them 0 and the largest half
 };
 
 Light light_of(const FrameFile& frame) {
@@ -101,10 +101,9 @@ void tell_of(const std::string& path, const FrameFile& frame, const Light& light
                            std::string(static_cast<std::size_t>(std::ceil(share(count))), '#')));
     for (const auto& [count, name] :
          {std::pair(light.black, "black or below"), std::pair(light.above_white, "above white (1.0) in a channel"),
+          std::pair(light.not_numbers, "NaN or infinite, taken for 0 and 65504"),
           std::pair(light.transparent, "wholly transparent")})
         if (count != 0) answer(fmt::format("{:>13.2f} % {}", share(count), name));
-    if (light.not_numbers != 0)
-        answer(fmt::format("{:>15} samples NaN or infinite, taken for 0 and 65504", light.not_numbers));
     if (light.above_zero.empty()) return;
     std::string line = "percentiles:";
     for (const int percent : percents)
