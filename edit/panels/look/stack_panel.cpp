@@ -146,12 +146,6 @@ class StackList {
                 return Result<>();
             });
         state_.note("stack/all");
-        ImGui::SameLine(0, 0);
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextDisabled("Flat table");
-        tooltip(
-            "Every effect of the flat table, in its fixed order. Moving or copying one makes it a stack; of those that "
-            "are off, it keeps those that were set.");
         ImGui::SameLine();
         const float room = ImGui::GetContentRegionAvail().x - buttons_width() - ImGui::GetStyle().ItemSpacing.x;
         ImGui::SetNextItemWidth(std::min(9 * ImGui::GetFontSize(), room));
@@ -165,6 +159,10 @@ class StackList {
                     });
             ImGui::EndCombo();
         }
+        tooltip(
+            "The flat table: every effect, in this fixed order. Moving or copying one makes it a stack; of those that "
+            "are "
+            "off, it keeps those that were set.");
         state_.note("stack/order");
     }
 
