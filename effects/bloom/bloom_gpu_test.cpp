@@ -116,7 +116,7 @@ double flip_of(const ReferenceImage& a, const ReferenceImage& b) {
     return errors ? errors->mean : 1e9;
 }
 
-/// As on a device that is no software driver: by taps, in compute kernels, with a packed pyramid.
+/// As the planner has it for a GPU: in compute kernels, with a packed pyramid.
 ReferenceImage developed_packed(const Bloom& bloom, const ReferenceImage& picture) {
     bool& is_software = gpu::test::context().traits.is_software;
     const bool before = std::exchange(is_software, false);
