@@ -6,7 +6,6 @@
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "halation/halation_reference.hpp"
-#include "shared/test_lamp.hpp"
 #include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
@@ -129,16 +128,6 @@ TEST(EffectHalation, GpuMatchesReference) {
 
 TEST(EffectHalation, GpuNanAndInfinityStayContained) {
     test::expect_contained(developed({}, test::grey_with_no_numbers()));
-}
-
-TEST(EffectHalation, GpuALampCountsAlikeWhereverItLies) {
-    const Halation halation{
-        .intensity = 1, .threshold = 0, .radius = 32, .spread = 0, .tint = {1, 1, 1}, .conserves_energy = false};
-    test::expect_lamps_count_alike(1, 28, [&](const ReferenceImage& picture) {
-        ReferenceImage added = developed(halation, picture);
-        for (std::size_t i = 0; i < added.pixels.size(); ++i) added.pixels[i].g -= picture.pixels[i].g;
-        return added;
-    });
 }
 
 }  // namespace
