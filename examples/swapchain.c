@@ -10,7 +10,7 @@
 
 #include "host.h"
 
-enum { in_flight = 2, most_images = 8 };
+enum { in_flight = 2, max_images = 8 };
 
 static void need(DarkroomResult result) {
     if (result == DARKROOM_OK) return;
@@ -28,9 +28,9 @@ typedef struct Slot {
 typedef struct Swapchain {
     VkSwapchainKHR swapchain;
     uint32_t count;
-    VkImage images[most_images];
-    VkImageView views[most_images];
-    VkSemaphore rendered[most_images];
+    VkImage images[max_images];
+    VkImageView views[max_images];
+    VkSemaphore rendered[max_images];
 } Swapchain;
 
 static VkSemaphore create_semaphore(const Host* host) {
@@ -58,7 +58,7 @@ static Swapchain create_swapchain(const Host* host, VkSurfaceKHR surface, VkForm
                                            .compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR,
                                            .presentMode = VK_PRESENT_MODE_FIFO_KHR,
                                            .clipped = VK_TRUE};
-    Swapchain out = {.count = most_images};
+    Swapchain out = {.count = max_images};
     check(vkCreateSwapchainKHR(host->device, &info, NULL, &out.swapchain), "vkCreateSwapchainKHR");
     check(vkGetSwapchainImagesKHR(host->device, out.swapchain, &out.count, out.images), "vkGetSwapchainImagesKHR");
     for (uint32_t i = 0; i < out.count; ++i) {

@@ -83,7 +83,7 @@ void LookDocument::remember(std::string what) {
     }
     std::size_t bytes = 0;
     for (const Step& step : undo_) bytes += step.bytes;
-    for (; undo_.size() > 1 && (undo_.size() > most_steps || bytes > most_history_bytes); undo_.pop_front())
+    for (; undo_.size() > 1 && (undo_.size() > max_steps || bytes > max_history_bytes); undo_.pop_front())
         bytes -= undo_.front().bytes;
 }
 

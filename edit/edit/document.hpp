@@ -20,8 +20,8 @@ namespace darkroom::edit {
 
 class LookDocument {
   public:
-    static constexpr std::size_t most_steps = 1000;
-    static constexpr std::size_t most_history_bytes = std::size_t{256} << 20;  ///< tables that only it holds included
+    static constexpr std::size_t max_steps = 1000;
+    static constexpr std::size_t max_history_bytes = std::size_t{256} << 20;  ///< tables that only it holds included
 
     /// Of a look or a scene. `lens`: of the camera that the look is for, which says what the file does not; a scene's
     /// own camera says it by itself. Errors are read_look's.

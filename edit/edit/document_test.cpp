@@ -138,10 +138,10 @@ TEST_F(Document, WhatFailsOrCannotBeHasNotHappened) {
 
 TEST_F(Document, HistoryIsBounded) {
     LookDocument document;
-    for (std::size_t i = 0; i < LookDocument::most_steps + 50; ++i) must(expose(document, i % 2 == 0 ? 2 : 3));
+    for (std::size_t i = 0; i < LookDocument::max_steps + 50; ++i) must(expose(document, i % 2 == 0 ? 2 : 3));
     std::size_t steps = 0;
     for (; document.can_undo(); ++steps) document.undo();
-    EXPECT_EQ(steps, LookDocument::most_steps);
+    EXPECT_EQ(steps, LookDocument::max_steps);
 }
 
 // 32 tables of 16 MiB, each seen once.

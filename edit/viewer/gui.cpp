@@ -16,7 +16,7 @@ using darkroom::Result;
 namespace {
 
 /// As many images as swapchains have, and more than frames under way.
-constexpr std::size_t most_changed = 6;
+constexpr std::size_t max_changed = 6;
 
 }  // namespace
 
@@ -66,7 +66,7 @@ Result<> Gui::begin(float scale) {
 
 std::vector<VkRect2D> Gui::parts_of(const darkroom::window::PresentFrame& frame, const ImDrawData& lists) {
     changed_.push_back({frame.number, damage_.take(lists, darkroom::window::address_of(ImGui::GetIO().Fonts->TexID))});
-    if (changed_.size() > most_changed) changed_.pop_front();
+    if (changed_.size() > max_changed) changed_.pop_front();
     // One that was begun and not drawn leaves a gap.
     if (frame.age == 0 || frame.age > changed_.size() ||
         changed_[changed_.size() - frame.age].frame != frame.number + 1 - frame.age)

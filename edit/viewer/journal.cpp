@@ -18,11 +18,11 @@ using darkroom::Result;
 namespace {
 
 constexpr std::chrono::milliseconds between_writes{1000};
-constexpr std::size_t most_bytes = std::size_t{4} << 20;
+constexpr std::size_t max_bytes = std::size_t{4} << 20;
 constexpr std::string_view first_line = "# Unsaved edits of process ";
 
 Result<std::string> text_of(const std::filesystem::path& file) {
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = most_bytes});
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = max_bytes});
     if (!bytes) return darkroom::failure(bytes.error());
     const void* const data = bytes->data();
     return std::string(static_cast<const char*>(data), bytes->size());

@@ -14,18 +14,18 @@ namespace {
 /// A finer step is taken where it is expected to need this part of what it may, so that two steps do not alternate.
 constexpr double share_used = 0.8;
 /// A step of four times fewer pixels that gains less is not worth them; smaller steps gain less.
-constexpr double least_gain = 1.2, pixels_of_least_gain = 4;
+constexpr double min_gain = 1.2, pixels_of_least_gain = 4;
 /// So many times too long, and the next picture must not wait for a third like it.
 constexpr double far_too_long = 4;
 /// More than that no finer step is expected to take: it was left while something else had the machine.
-constexpr double most_gain = 4;
+constexpr double max_gain = 4;
 /// Pictures of the step before that are still under way, and the images that are made anew.
 constexpr std::uint32_t not_counted = 2;
 constexpr std::size_t counted = 3;
 constexpr std::uint32_t first_hold = 240, longest_hold = 1U << 20;
 
 double least_gain_of(double fewer_pixels) {
-    return 1 + (least_gain - 1) * std::min(1.0, (fewer_pixels - 1) / (pixels_of_least_gain - 1));
+    return 1 + (min_gain - 1) * std::min(1.0, (fewer_pixels - 1) / (pixels_of_least_gain - 1));
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void ScaleChoice::add(double seconds) {
         power_ = std::log(gain) / std::log(pixels);
     }
     if (step_ > 0) {
-        const double longer = std::min(std::pow(fewer(step_ - 1, step_), power_), most_gain);
+        const double longer = std::min(std::pow(fewer(step_ - 1, step_), power_), max_gain);
         if (median * longer < share_used * most_) return change(step_ - 1);
     }
     if (median <= most_ || step_ + 1 == scales_.size() || held_ > 0) return;

@@ -13,7 +13,7 @@ namespace app {
 namespace {
 
 constexpr double shown_for = 2;  ///< seconds
-constexpr std::size_t most_lines = 4, most_printed = 500;
+constexpr std::size_t max_lines = 4, max_printed = 500;
 constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
@@ -43,7 +43,7 @@ void Screen::tell(std::string line) {
     const auto shown = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(shown_for));
     lines_.push_back({std::move(line), now_ + shown_for, Clock::now() + shown});
     is_changed_ = true;
-    if (lines_.size() > most_lines) lines_.pop_front();
+    if (lines_.size() > max_lines) lines_.pop_front();
 }
 
 void Screen::say(std::string_view source, std::span<const darkroom::panels::Messages::Said> all) {
@@ -79,7 +79,7 @@ bool Screen::is_over() const {
 void Screen::print(std::string line) {
     is_changed_ = true;
     printed_.push_back(std::move(line));
-    if (printed_.size() > most_printed) printed_.pop_front();
+    if (printed_.size() > max_printed) printed_.pop_front();
 }
 
 void Screen::draw(const Input& input) {

@@ -99,11 +99,11 @@ void Viewer::let_go_of_device() {
 Result<> Viewer::make_anew(const darkroom::Error& error) {
     // One that is lost again and again is broken.
     constexpr std::chrono::minutes lately{1};
-    constexpr std::size_t most_lost = 3;
+    constexpr std::size_t max_lost = 3;
     const Clock::time_point now = Clock::now();
     while (!lost_at_.empty() && now - lost_at_.front() > lately) lost_at_.pop_front();
     lost_at_.push_back(now);
-    if (is_fixed() || lost_at_.size() > most_lost) return failure(error);
+    if (is_fixed() || lost_at_.size() > max_lost) return failure(error);
     write_config();
     const Playback playback = playback_;
     const bool has_other_picture = other_picture_.has_value();

@@ -14,7 +14,7 @@ using darkroom::window::PresentFrame;
 
 namespace {
 
-VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
+VkExtent2D min_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
         if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
         settle(fmt::format("fit {}", side),
                views_[side]->fit(*source_, wanted, interface_->format(), !wanted_.pictures.empty()));
-        extent = least_of(extent, views_[side]->most());
+        extent = min_of(extent, views_[side]->most());
     }
     full_extent_ = extent;
     made_extent_ = {(extent.width + divisor_ - 1) / divisor_, (extent.height + divisor_ - 1) / divisor_};

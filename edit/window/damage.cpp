@@ -79,7 +79,7 @@ void add_part(std::vector<VkRect2D>& parts, const VkRect2D& part) {
         } else {
             ++i;
         }
-    if (parts.size() < most_damaged_parts) return parts.push_back(added);
+    if (parts.size() < max_damaged_parts) return parts.push_back(added);
     const auto growth = [&](const VkRect2D& with) { return area(both(added, with)) - area(with); };
     take(static_cast<std::size_t>(std::ranges::min_element(parts, {}, growth) - parts.begin()));
     add_part(parts, added);

@@ -15,7 +15,7 @@ struct ImDrawData;
 namespace darkroom::window {
 
 /// So many more would be drawn again and again.
-inline constexpr std::size_t most_damaged_parts = 4;
+inline constexpr std::size_t max_damaged_parts = 4;
 
 /// Adds a rectangle to few that cover all that was added.
 void add_part(std::vector<VkRect2D>& parts, const VkRect2D& part);

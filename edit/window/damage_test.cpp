@@ -59,7 +59,7 @@ TEST(WindowDamage, FewPartsCoverAll) {
                                 {below(9), below(9)}};
             added.push_back(part);
             add_part(parts, part);
-            ASSERT_LE(parts.size(), most_damaged_parts);
+            ASSERT_LE(parts.size(), max_damaged_parts);
         }
         for (const auto& [offset, extent] : added)
             for (std::uint32_t y = 0; y < extent.height; ++y)

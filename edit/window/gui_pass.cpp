@@ -89,7 +89,7 @@ struct GrowingBuffer {
 
 struct DrawSlot {
     GrowingBuffer vertices, indices;
-    gpu::DescriptorSets sets;        ///< most_panes
+    gpu::DescriptorSets sets;        ///< max_panes
     std::vector<const Pane*> panes;  ///< of the recording that is made; sets in the same order
 };
 
@@ -212,7 +212,7 @@ Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontA
     if (!plain) return failure(std::move(plain));
     state.plain_panes = std::move(*plain);
     state.slots.resize(desc.slots);
-    const std::vector<VkDescriptorSetLayout> layouts(most_panes, state.layout.handle);
+    const std::vector<VkDescriptorSetLayout> layouts(max_panes, state.layout.handle);
     for (DrawSlot& slot : state.slots) {
         Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
         if (!sets) return failure(std::move(sets));
@@ -285,8 +285,8 @@ Result<VkDescriptorSet> GuiPass::State::pane_set(const Pane& pane, DrawSlot& slo
     const auto known = std::ranges::find(slot.panes, &pane);
     const auto index = static_cast<std::size_t>(known - slot.panes.begin());
     if (known != slot.panes.end()) return slot.sets.sets[index];
-    if (index == most_panes)
-        return machine_error(fmt::format("the interface shows more than {} pictures at once", most_panes));
+    if (index == max_panes)
+        return machine_error(fmt::format("the interface shows more than {} pictures at once", max_panes));
     slot.panes.push_back(&pane);
     write_set(*context, slot.sets.sets[index],
               {sampled(*context, pane.view.image, pane.is_nearest),

@@ -23,7 +23,7 @@ namespace darkroom::window {
 class GuiPass {
   public:
     /// Different panes in one frame's lists.
-    static constexpr std::uint32_t most_panes = 256;
+    static constexpr std::uint32_t max_panes = 256;
 
     struct Desc {
         VkFormat format = VK_FORMAT_UNDEFINED;  ///< of the colour attachment; an sRGB one is given decoded colours
@@ -39,7 +39,7 @@ class GuiPass {
 
     /// Draws inside a rendering instance over one colour attachment of the format, as large as
     /// DisplaySize * FramebufferScale. Slot: no recording with it is unfinished. A texture is a Pane, or null or the
-    /// atlas's for the fonts. Errors: more panes than most_panes, VkResult.
+    /// atlas's for the fonts. Errors: more panes than max_panes, VkResult.
     Result<> record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot);
     /// The same in parts, each in a rendering instance of its own: begin() once, then what lies within each part.
     Result<> begin(const ImDrawData& data, std::uint32_t slot);

@@ -297,16 +297,16 @@ TEST_F(WindowGpuPane, MarksWhatIsClippedOrBroken) {
 
 TEST_F(WindowGpuPane, RefusesMorePanesThanItHasSetsFor) {
     const Picture picture = upload(context, numbers(0, 1), VK_FORMAT_R32G32B32A32_SFLOAT);
-    std::vector<Pane> panes(GuiPass::most_panes + 1, Pane{.view = {reference(picture)}});
+    std::vector<Pane> panes(GuiPass::max_panes + 1, Pane{.view = {reference(picture)}});
     const auto with = [&](std::size_t count) -> const ImDrawData& {
         return interface.frame([&](ImDrawList& list) {
             // Each twice: a picture shown again takes no more.
             for (std::size_t i = 0; i < 2 * count; ++i) list.AddImage(panes[i % count].texture(), {0, 0}, {8, 8});
         });
     };
-    draw(with(GuiPass::most_panes));
+    draw(with(GuiPass::max_panes));
     EXPECT_TRUE(result);
-    draw(with(GuiPass::most_panes + 1));
+    draw(with(GuiPass::max_panes + 1));
     ASSERT_FALSE(result);
     EXPECT_NE(result.error().text.find("more than 256 pictures"), std::string::npos) << result.error().text;
     draw(with(1));

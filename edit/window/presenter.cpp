@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t forever = std::numeric_limits<std::uint64_t>::max();
 /// Swapchains that may wait to be freed. More: the window changes and shows nothing, and the device is waited for.
-constexpr std::size_t most_retired = 8;
+constexpr std::size_t max_retired = 8;
 /// Of one attempt to get an image: a surface that nobody looks at may give none.
 constexpr std::uint64_t patience = 100'000'000;  // nanoseconds
 
@@ -276,7 +276,7 @@ void Presenter::State::free_retired() {
         destroy(retired.front().swapchain);
         retired.pop_front();
     }
-    if (retired.size() > most_retired) free_all_retired();
+    if (retired.size() > max_retired) free_all_retired();
     counters.retired = retired.size();
 }
 

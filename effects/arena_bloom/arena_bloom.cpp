@@ -38,7 +38,7 @@ void build(PassBuilder& builder) {
                            .output = create("combine", 4),
                            .custom_vectors = 2,
                            .constants = weight_constants};
-    for (std::uint32_t level = 0; level < arena_bloom_most_levels; ++level) {
+    for (std::uint32_t level = 0; level < arena_bloom_max_levels; ++level) {
         const std::string number = std::to_string(level);
         // Of those that are not there the weight is 0.
         if (level < levels)

@@ -15,7 +15,7 @@
 
 namespace darkroom {
 
-inline constexpr std::uint32_t arena_bloom_levels = 4, arena_bloom_most_levels = 6;
+inline constexpr std::uint32_t arena_bloom_levels = 4, arena_bloom_max_levels = 6;
 inline constexpr std::array<double, arena_bloom_levels> arena_bloom_published_weights{0.32, 0.10, 0.20, 0.25};
 
 /// Halvings by which a picture of this height needs more than one of 1080 lines.
@@ -24,14 +24,13 @@ inline double arena_bloom_shift(std::uint32_t height) { return std::log2(std::ma
 /// Halvings that frames of at most this extent use.
 inline std::uint32_t arena_bloom_level_count(VkExtent2D extent) {
     const double more = std::ceil(std::max(arena_bloom_shift(extent.height), 0.0));
-    return arena_bloom_levels +
-           std::min(static_cast<std::uint32_t>(more), arena_bloom_most_levels - arena_bloom_levels);
+    return arena_bloom_levels + std::min(static_cast<std::uint32_t>(more), arena_bloom_max_levels - arena_bloom_levels);
 }
 
 /// Of each level: the published weights of a picture of 1080 lines, each shared out between the two levels that are
 /// nearest to its width here. None is narrower than the first.
-inline std::array<double, arena_bloom_most_levels> arena_bloom_weights(std::uint32_t height) {
-    std::array<double, arena_bloom_most_levels> out{};
+inline std::array<double, arena_bloom_max_levels> arena_bloom_weights(std::uint32_t height) {
+    std::array<double, arena_bloom_max_levels> out{};
     const double last = arena_bloom_level_count({height, height}) - 1;
     for (std::size_t level = 0; level < arena_bloom_levels; ++level) {
         const double place = std::clamp(static_cast<double>(level) + arena_bloom_shift(height), 0.0, last);
@@ -74,7 +73,7 @@ inline ReferenceImage arena_bloom_reference_quarter(const ReferenceImage& image,
 
 /// What is added to the picture, at a quarter of each side.
 inline ReferenceImage arena_bloom_reference_glow(const ReferenceImage& image, const ArenaBloom& bloom) {
-    std::array<double, arena_bloom_most_levels> weights{};
+    std::array<double, arena_bloom_max_levels> weights{};
     std::ranges::copy(arena_bloom_published_weights, weights.begin());
     if (bloom.reach == Reach::Height) weights = arena_bloom_weights(image.height);
     ReferenceImage level = arena_bloom_reference_quarter(image, bloom.source_kind),

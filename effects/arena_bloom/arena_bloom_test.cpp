@@ -104,7 +104,7 @@ TEST(EffectArenaBloom, GpuMatchesReference) {
 // At twice the height each weight is that of the next level, in between two levels share it, and at no height is any
 // lost.
 TEST(EffectArenaBloom, WeightsMoveWithTheHeight) {
-    const auto expect = [](std::uint32_t height, const std::array<double, arena_bloom_most_levels>& weights) {
+    const auto expect = [](std::uint32_t height, const std::array<double, arena_bloom_max_levels>& weights) {
         const auto got = arena_bloom_weights(height);
         for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(got[i], weights[i], 1e-9) << height << ", " << i;
     };

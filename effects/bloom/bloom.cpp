@@ -33,7 +33,7 @@ constexpr auto bloom_rows = describe(
                           {1, 5}),
     field<&Bloom::reach>("Unit of the glow's width: parts of the picture's height, or pixels."));
 
-constexpr std::uint32_t most_by_pixels = 5;
+constexpr std::uint32_t max_levels_by_pixels = 5;
 /// Height at which a glow by height is that by pixels.
 constexpr double known_height = 1080;
 /// Of levels that are finer than the glow: they are stored as a multiple of the first one, which is not 0.
@@ -49,7 +49,7 @@ std::uint32_t levels_of_size(VkExtent2D extent) {
 }
 
 /// Of any values in frames of at most this extent.
-std::uint32_t most_levels(VkExtent2D extent) {
+std::uint32_t max_levels(VkExtent2D extent) {
     const std::uint32_t by_height = bloom_weights({.reach = Reach::Height}, extent).count;
     return std::max(by_height, bloom_level_count(extent));
 }
@@ -217,7 +217,7 @@ std::uint32_t stored_levels(std::uint32_t levels) {
 
 void build(PassBuilder& builder) {
     const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
-    const std::uint32_t levels = builder.from_max_extent(most_levels);
+    const std::uint32_t levels = builder.from_max_extent(max_levels);
     builder.end_constants(1, end_constants);
     if (levels == 0) {
         builder.side("bloom_pyramid", PassImage{}, neutral);
@@ -242,7 +242,7 @@ bool is_identity(const void* parameters) { return bloom_of(parameters).intensity
 
 }  // namespace
 
-std::uint32_t bloom_level_count(VkExtent2D extent) { return std::min(levels_of_size(extent), most_by_pixels); }
+std::uint32_t bloom_level_count(VkExtent2D extent) { return std::min(levels_of_size(extent), max_levels_by_pixels); }
 
 double BloomWeights::total() const {
     double sum = 0;

@@ -14,7 +14,7 @@ namespace darkroom {
 namespace {
 
 constexpr Unit millimetres{"mm"}, dioptres_per_second{"1/m/s"};
-constexpr std::int32_t most_rings = 8;
+constexpr std::int32_t max_rings = 8;
 
 constexpr auto depth_of_field_rows = describe(
     field<&DepthOfField::focus_distance>("Distance along the view axis that is sharp.", {0.01, 1e5, Scale::Log},
@@ -38,7 +38,7 @@ constexpr auto depth_of_field_rows = describe(
                                    unit::degrees),
     field<&DepthOfField::anamorphic_ratio>("Height of the circle of confusion divided by its width.", {1, 2}),
     field<&DepthOfField::cats_eye>("Share by which the barrel of the lens cuts circles in the corners.", {0, 1}),
-    field<&DepthOfField::rings>("Number of sample rings for a pixel: n rings are 4 n (n + 1) samples.", {2, most_rings})
+    field<&DepthOfField::rings>("Number of sample rings for a pixel: n rings are 4 n (n + 1) samples.", {2, max_rings})
         .as_loop_count(),
     field<&DepthOfField::resolution>("Size of the blurred picture, as a share of each side.").at_compile());
 
@@ -90,7 +90,7 @@ void circle_constants(const void* parameters, const PassContext& context, std::s
               static_cast<float>(blur.slope)};
 }
 
-constexpr std::uint32_t most_pairs = 2 * most_rings * (most_rings + 1);
+constexpr std::uint32_t max_pairs = 2 * max_rings * (max_rings + 1);
 
 /// See depth_of_field.glsl#gather.
 template <std::uint32_t denominator>
@@ -103,7 +103,7 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
     out[0] = {static_cast<float>(blur.least), 0, static_cast<float>(width * shift), static_cast<float>(height * shift)};
     out[1] = {static_cast<float>(blur.to * blur.slope), static_cast<float>(blur.slope), 0, 0};
     std::size_t next = 2;
-    for (std::uint32_t ring = 1; ring <= most_rings; ++ring)
+    for (std::uint32_t ring = 1; ring <= max_rings; ++ring)
         for (std::uint32_t i = 0; i < 8 * ring; i += 2) {
             const auto one = depth_of_field_place(field, ring, i), other = depth_of_field_place(field, ring, i + 1);
             out[next++] = {static_cast<float>(one[0]), static_cast<float>(one[1]), static_cast<float>(other[0]),
@@ -168,7 +168,7 @@ void build_at(PassBuilder& builder) {
                                     {.name = "depth_of_field_near_tiles", .image = tiles}},
                          .output = create("behind"),
                          .more_outputs = {create("near")},
-                         .custom_vectors = 2 + most_pairs,
+                         .custom_vectors = 2 + max_pairs,
                          .constants = gather_constants<denominator>});
     if (gathered.size() < 2) return;
     const std::vector<PassImage> filled =

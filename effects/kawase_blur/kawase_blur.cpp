@@ -20,7 +20,7 @@ constexpr auto kawase_blur_rows =
              field<&KawaseBlur::offset>(
                  "Distance between taps, relative to the published one; at 0 kawase has no width.", {0, 2}));
 
-constexpr std::size_t most_iterations = 8;
+constexpr std::size_t max_iterations = 8;
 
 const KawaseBlur& blur_of(const void* parameters) { return *static_cast<const KawaseBlur*>(parameters); }
 
@@ -34,7 +34,7 @@ void corner_constants(const void* parameters, const PassContext& context, std::s
 constexpr std::array corner_constants_of = []<std::size_t... i>(std::index_sequence<i...>) {
     return std::array<ConstantsFunction, sizeof...(i)>{corner_constants<i>...};
 }
-(std::make_index_sequence<most_iterations>());
+(std::make_index_sequence<max_iterations>());
 
 /// The taps' distance in texels of the smaller picture, half of which the corners take.
 void dual_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {

@@ -23,7 +23,7 @@ constexpr auto lens_flare_rows = describe(
     field<&LensFlare::starburst>("Share of the flare in the rays of the aperture.", {0, 1}),
     field<&LensFlare::tint>("Colour that multiplies the flare.", {0, 4}));
 
-constexpr std::uint32_t most_ghosts = 16;
+constexpr std::uint32_t max_ghosts = 16;
 
 const LensFlare& flare_of(const void* parameters) { return *static_cast<const LensFlare*>(parameters); }
 
@@ -55,7 +55,7 @@ void build(PassBuilder& builder) {
                                          .shader = "lens_flare.glsl#parts",
                                          .inputs = {{.name = "lens_flare_light", .image = light}},
                                          .output = builder.create({.name = "flare", .denominator = part}),
-                                         .custom_vectors = 2 + most_ghosts,
+                                         .custom_vectors = 2 + max_ghosts,
                                          .constants = part_constants});
     builder.side("lens_flare_flare", flare, {0, 0, 0, 0});
 }

@@ -38,7 +38,7 @@ constexpr auto perturb_rows = describe(
     field<&Perturb::reach>("Pixels that amplitudes and displacements are measured in: those of the picture, or of a "
                            "picture of 1080 lines."));
 
-constexpr std::uint32_t own_vectors = 2, most_cpu_vertices = 1000, sine_entries = 256;
+constexpr std::uint32_t own_vectors = 2, max_cpu_vertices = 1000, sine_entries = 256;
 
 const Perturb& perturb_of(const void* parameters) { return *static_cast<const Perturb*>(parameters); }
 
@@ -134,9 +134,9 @@ std::string conflict(const void* parameters) {
     if (p.evaluation != PerturbEvaluation::Cpu) return {};
     if (p.distortion.id != 0) return "evaluation = cpu: the CPU does not read the distortion image; allowed is vertex";
     const std::size_t vertices = vertices_of(p);
-    if (vertices <= most_cpu_vertices) return {};
+    if (vertices <= max_cpu_vertices) return {};
     return "grid of " + std::to_string(vertices) + " vertices: with evaluation = cpu at most " +
-           std::to_string(most_cpu_vertices) + " are allowed";
+           std::to_string(max_cpu_vertices) + " are allowed";
 }
 
 bool is_identity(const void* parameters) {

@@ -51,7 +51,7 @@ class Random {
     std::uint32_t state_;
 };
 
-constexpr std::int32_t most_slices = 4;
+constexpr std::int32_t max_slices = 4;
 
 /// Between texels of an image of `extent`, each the first of `step` pixels of the frame, and view space: see the
 /// shader.
@@ -165,7 +165,7 @@ void build(PassBuilder& builder) {
     const auto noise = ssao_noise();
     std::vector<PassVector> turns;
     for (const auto& texel : noise) turns.push_back({texel[0], texel[1], 0, 0});
-    for (std::int32_t slices = 1; slices <= most_slices; ++slices)
+    for (std::int32_t slices = 1; slices <= max_slices; ++slices)
         for (const auto& texel : noise) turns.push_back(turn(std::numbers::pi / slices * double{texel[2]} / 16));
     TableDesc table{.name = "ssao turns",
                     .format = VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -218,7 +218,7 @@ std::uint32_t ssao_tile(double time, std::uint64_t frame_index) {
 }
 
 std::array<std::int32_t, 2> ssao_slices(std::int32_t samples) {
-    const auto slices = std::clamp(static_cast<std::int32_t>(std::lround(std::sqrt(samples / 4.0))), 1, most_slices);
+    const auto slices = std::clamp(static_cast<std::int32_t>(std::lround(std::sqrt(samples / 4.0))), 1, max_slices);
     return {slices, std::max(1, samples / (2 * slices))};
 }
 

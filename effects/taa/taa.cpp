@@ -51,7 +51,7 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
     out[3] = {-row(0) * flat[0], -row(1) * flat[1], context.has_history ? 1.0f : 0.0f,
               static_cast<float>(context.frame_index % 64)};
     const TaaExponents exponents(std::sqrt(double{out[1][0]} * double{out[1][1]}));
-    out[4] = {static_cast<float>(1 / taa_most_frames(taa_of(parameters))),
+    out[4] = {static_cast<float>(1 / taa_max_frames(taa_of(parameters))),
               static_cast<float>(-exponents.narrow / std::log(2)), static_cast<float>(-exponents.wide / std::log(2)),
               is_of_codes ? 1.0f : 0.0f};
 }

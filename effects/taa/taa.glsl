@@ -116,7 +116,7 @@ const float taa_reach = 1.25;  // how far the past may lie off the frame's mean:
 const float taa_still_noise = 3.0, taa_moving_noise = 0.5;  // and of samples off the past
 // As far as the frame's own colours are apart: where light changes, samples are off the past, too, and the past must not
 // stay for it.
-const float taa_most_noise = 0.5;
+const float taa_max_noise = 0.5;
 
 // Of the samples beside, the nearest and the farthest, and where.
 struct TaaEdge {
@@ -249,7 +249,7 @@ void shade(Pixel pixel, out vec4 result[3]) {
         past = now.mean + away / most;
         frames /= most;  // it counts as much less as it had to be drawn
         color = mix(past, color, now.weight / (frames + now.weight));
-        float off = min(abs(now.luma - past.x), taa_most_noise * now.deviation.x);
+        float off = min(abs(now.luma - past.x), taa_max_noise * now.deviation.x);
         noise += (off - noise) * max(0.1, 1.0 / (frames + 1.0));
     }
     // Where an edge moves before what is behind it, samples will be off for another reason; and the thing beside its edge

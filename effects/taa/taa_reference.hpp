@@ -18,7 +18,7 @@
 namespace darkroom {
 
 /// Frames that are gathered where nothing moves.
-inline double taa_most_frames(const Taa& taa) { return 8 * std::exp2(4 * double{taa.stability}); }
+inline double taa_max_frames(const Taa& taa) { return 8 * std::exp2(4 * double{taa.stability}); }
 
 /// Of the Gaussian by which samples count, in pixels of the output: where there is a past, narrower the more samples
 /// there are, and where there is none, of a pixel of the frame.
@@ -29,14 +29,14 @@ struct TaaExponents {
 
 /// Until the frames before the first weigh less than half a code.
 inline std::uint32_t taa_pre_roll(const Taa& taa) {
-    return static_cast<std::uint32_t>(std::ceil(taa_most_frames(taa) * std::log(2 * 255)));
+    return static_cast<std::uint32_t>(std::ceil(taa_max_frames(taa) * std::log(2 * 255)));
 }
 
 namespace taa {
 
 // The same numbers as in taa.glsl#gather and taa.glsl#mask.
 constexpr double edge = 0.03, nearer = 0.02, loss = 2.2, reach = 1.25, still_noise = 3, moving_noise = 0.5,
-                 most_noise = 0.5, mask_per_change = 4;
+                 max_noise = 0.5, mask_per_change = 4;
 
 /// One frame of a sequence.
 class Gather {
@@ -226,7 +226,7 @@ class Gather {
             const Rgba before = sample_reference(*kept_before_, bx / width_, by / height_);
             noise = before.g * before.g;
             frames = std::min(before.r * before.r * 128,
-                              1 / (1 / taa_most_frames(taa_) + loss * (fx * (1 - fx) + fy * (1 - fy))));
+                              1 / (1 / taa_max_frames(taa_) + loss * (fx * (1 - fx) + fy * (1 - fy))));
             frames *= 1 - mask(i0, j0);
         }
         const Now frame = now(i0, j0, static_cast<double>(i0) + 0.5 - px, static_cast<double>(j0) + 0.5 - py,
@@ -243,7 +243,7 @@ class Gather {
             frames /= beyond;
             const double alpha = frame.weight / (frames + frame.weight);
             color = sum(sum({}, held, 1 - alpha), color, alpha);
-            const double off = std::min(std::abs(frame.luma - held[0]), most_noise * frame.deviation[0]);
+            const double off = std::min(std::abs(frame.luma - held[0]), max_noise * frame.deviation[0]);
             noise += (off - noise) * std::max(0.1, 1 / (frames + 1));
         }
         std::array<double, 2> behind = motion(far_i, far_j, farthest);

@@ -445,8 +445,8 @@ TEST(EffectTaa, AlphaIsThatOfTheFrame) {
 }
 
 TEST(EffectTaa, StabilityIsHowManyFramesAreGathered) {
-    EXPECT_EQ(taa_most_frames({.stability = 0}), 8);
-    EXPECT_EQ(taa_most_frames({.stability = 1}), 128);
+    EXPECT_EQ(taa_max_frames({.stability = 0}), 8);
+    EXPECT_EQ(taa_max_frames({.stability = 1}), 128);
     EXPECT_LT(taa_pre_roll({.stability = 0}), taa_pre_roll({.stability = 1}));
 }
 

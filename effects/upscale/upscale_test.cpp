@@ -61,10 +61,10 @@ double published(const ReferenceImage& picture, double x, double y) {
     const auto set = [&](double w, int i, int j) {
         const double a = 2 * at(i, j - 1), b = 2 * at(i - 1, j), c = 2 * at(i, j), d = 2 * at(i + 1, j),
                      e = 2 * at(i, j + 1);
-        const double most_x = std::max(std::abs(d - c), std::abs(c - b));
-        const double most_y = std::max(std::abs(e - c), std::abs(c - a));
-        const double len_x = most_x > 0 ? std::min(std::abs(d - b) / most_x, 1.0) : 0;
-        const double len_y = most_y > 0 ? std::min(std::abs(e - a) / most_y, 1.0) : 0;
+        const double max_x = std::max(std::abs(d - c), std::abs(c - b));
+        const double max_y = std::max(std::abs(e - c), std::abs(c - a));
+        const double len_x = max_x > 0 ? std::min(std::abs(d - b) / max_x, 1.0) : 0;
+        const double len_y = max_y > 0 ? std::min(std::abs(e - a) / max_y, 1.0) : 0;
         dir_x += (d - b) * w, dir_y += (e - a) * w;
         len += (len_x * len_x + len_y * len_y) * w;
     };

@@ -58,7 +58,7 @@ template <class Pointer, class... Rest>
 }
 
 /// Longest arrays of structs and of words that a call may bring.
-inline constexpr std::uint32_t most_elements = 65536;
+inline constexpr std::uint32_t max_elements = 65536;
 
 /// A struct as this library knows it, of one whose size says how much the caller knows. `name` is its type's.
 template <class T>
@@ -96,8 +96,8 @@ template <class T>
 template <class T>
 [[nodiscard]] Result<std::vector<T>> read_all(const T* first, std::uint32_t count, std::string_view name) {
     std::vector<T> out;
-    if (count > most_elements)
-        return user_error(fmt::format("{} {}: allowed are at most {}", count, name, most_elements));
+    if (count > max_elements)
+        return user_error(fmt::format("{} {}: allowed are at most {}", count, name, max_elements));
     out.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         auto one = read_at(first, i, name);

@@ -41,8 +41,8 @@ Result<std::span<const std::byte>> bytes_of(const void* data, std::size_t size) 
 
 Result<std::span<const char* const>> names_of(const char* const* names, std::uint32_t count, std::string_view what) {
     if (count > 0 && names == nullptr) return is_null(what);
-    if (count > most_elements)
-        return user_error(fmt::format("{} {}: allowed are at most {}", count, what, most_elements));
+    if (count > max_elements)
+        return user_error(fmt::format("{} {}: allowed are at most {}", count, what, max_elements));
     for (std::uint32_t i = 0; i < count; ++i)
         if (names[i] == nullptr) return is_null(fmt::format("{}[{}]", what, i));
     return std::span(names, count);

@@ -5,7 +5,7 @@ namespace darkroom::c {
 
 namespace {
 
-constexpr std::uint32_t most_lights = 1024;
+constexpr std::uint32_t max_lights = 1024;
 
 bool is_zero(std::span<const float> numbers) {
     return std::ranges::all_of(numbers, [](float number) { return number == 0; });
@@ -146,16 +146,16 @@ Result<Frame> frame_of(const DarkroomFrame* given, DarkroomComposerObject& compo
     const auto camera = camera_of(frame->camera);
     if (!camera) return failure(camera.error());
     out.camera = *camera;
-    if (frame->light_count > most_lights)
-        return user_error(fmt::format("light_count = {}: allowed is at most {}", frame->light_count, most_lights));
+    if (frame->light_count > max_lights)
+        return user_error(fmt::format("light_count = {}: allowed is at most {}", frame->light_count, max_lights));
     composer.lights.resize(frame->light_count);
     for (std::uint32_t i = 0; i < frame->light_count; ++i) {
         const auto light = read_at(frame->lights, i, "DarkroomLight");
         if (!light) return failure(light.error());
         if (auto ok = light_of(*light, composer.lights[i]); !ok) return failure(std::move(ok));
     }
-    if (frame->watched_count > most_watches)
-        return user_error(fmt::format("watched_count = {}: allowed is at most {}", frame->watched_count, most_watches));
+    if (frame->watched_count > max_watches)
+        return user_error(fmt::format("watched_count = {}: allowed is at most {}", frame->watched_count, max_watches));
     composer.watched.resize(frame->watched_count);
     for (std::uint32_t i = 0; i < frame->watched_count; ++i) {
         const auto watched = read_at(frame->watched, i, "DarkroomWatched");

@@ -12,7 +12,7 @@ namespace {
 
 Result<std::span<const std::uint32_t>> words_of(const std::uint32_t* words, std::uint32_t count) {
     if (words == nullptr) return is_null("words");
-    if (count > most_elements) return user_error(fmt::format("{} words: allowed are at most {}", count, most_elements));
+    if (count > max_elements) return user_error(fmt::format("{} words: allowed are at most {}", count, max_elements));
     return std::span(words, count);
 }
 

@@ -18,8 +18,8 @@ using Point = std::array<double, 4>;
 
 constexpr double least_jitter = 0.05;  ///< pixels; what is less cannot be told from rounding
 constexpr double least_motion = 0.5;   ///< pixels
-constexpr std::size_t most_samples = 20'000;
-constexpr std::size_t least_samples = 16;
+constexpr std::size_t max_samples = 20'000;
+constexpr std::size_t min_samples = 16;
 
 Point product(const Matrix& matrix, const Point& point) {
     Point out{};
@@ -177,7 +177,7 @@ class Checker {
     void gather() {
         const bool is_still = camera_.view == camera_.previous_view;
         const std::size_t pixels = std::size_t{frame_.extent.width} * frame_.extent.height;
-        const std::size_t step = std::max<std::size_t>(1, pixels / most_samples);
+        const std::size_t step = std::max<std::size_t>(1, pixels / max_samples);
         for (std::size_t pixel = 0; pixel < pixels; pixel += step) {
             Sample sample{.found = found_motion(pixel)};
             if (!std::isfinite(sample.found[0]) || !std::isfinite(sample.found[1])) continue;
@@ -195,7 +195,7 @@ class Checker {
 
     void check_vectors() {
         gather();
-        if (samples_.size() < least_samples) return;
+        if (samples_.size() < min_samples) return;
         check_signs(check_jitter_in_vectors());
     }
 
@@ -236,7 +236,7 @@ class Checker {
             for (const Sample& sample : samples_)
                 if (std::abs(sample.expected[axis]) >= least_motion)
                     ratios.push_back((sample.found[axis] - jitter[axis]) / sample.expected[axis]);
-            if (ratios.size() < least_samples) continue;
+            if (ratios.size() < min_samples) continue;
             const double ratio = median(std::move(ratios));
             is_turned[axis] = ratio < -0.5 && ratio > -2;
             if (is_turned[axis] || (ratio > 0.5 && ratio < 2)) continue;

@@ -218,8 +218,8 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
         return user_error(fmt::format("{}: is not a regular file and cannot be replaced", target.string()));
     // Replacing a link would cut it; what it points to is what the user means, be it there or not.
     fs::path real = target;
-    constexpr int most_links = 40;  // as the system follows
-    for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(real, code)); ++i) {
+    constexpr int max_links = 40;  // as the system follows
+    for (int i = 0; i < max_links && fs::is_symlink(fs::symlink_status(real, code)); ++i) {
         const fs::path to = fs::read_symlink(real, code);
         if (code) break;
         real = real.parent_path() / to;

@@ -21,9 +21,9 @@ CustomEffect::~CustomEffect() = default;
 const EffectInfo& CustomEffect::info() const { return state_->info; }
 
 Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view shown_name) try {
-    if (text.size() > most_bytes)
+    if (text.size() > max_bytes)
         return user_error(fmt::format("{}: {} bytes, the file of an effect has at most {}", printable(shown_name),
-                                      text.size(), most_bytes));
+                                      text.size(), max_bytes));
     auto state = std::make_shared<State>();
     if (auto ok = custom::read_description(*state, text, shown_name); !ok) return failure(std::move(ok));
     state->info.owner = state;
@@ -37,7 +37,7 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
 }
 
 Result<CustomEffect> CustomEffect::load(const std::string& file) try {
-    auto bytes = read_file(file, {.max_size = most_bytes});
+    auto bytes = read_file(file, {.max_size = max_bytes});
     if (!bytes) return failure(std::move(bytes));
     return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
 } catch (...) {

@@ -14,13 +14,13 @@
 namespace darkroom::custom {
 
 // Beyond all that a picture needs, and within what a kernel may bind where every image is bound twice.
-inline constexpr std::size_t most_images = 16, most_passes = 32, most_inputs = 8, most_parameters = 64;
-inline constexpr std::size_t most_table_texels = 4096;
+inline constexpr std::size_t max_images = 16, max_passes = 32, max_inputs = 8, max_parameters = 64;
+inline constexpr std::size_t max_table_texels = 4096;
 // What Vulkan promises of compute shaders, so that a file runs wherever the library does; and what a pass may write.
-inline constexpr std::uint32_t most_invocations = 128, most_shared_bytes = 16384;
-inline constexpr std::size_t most_outputs = 4, most_buffers = 4;
-inline constexpr std::uint32_t most_numbers = 4096;
-inline constexpr std::uint32_t most_pre_roll = 1000;
+inline constexpr std::uint32_t max_invocations = 128, max_shared_bytes = 16384;
+inline constexpr std::size_t max_outputs = 4, max_buffers = 4;
+inline constexpr std::uint32_t max_numbers = 4096;
+inline constexpr std::uint32_t max_pre_roll = 1000;
 
 /// An image that the file declares.
 struct FileImage {

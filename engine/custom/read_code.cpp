@@ -276,9 +276,9 @@ Result<> read_uses(const Description& from, FileFunction& function, std::string_
             return user_error(fmt::format("{}: read without `@needs {}`", input.shader_name, input.name));
         function.inputs.push_back(input.shader_name);
     }
-    if (function.inputs.size() > most_inputs)
+    if (function.inputs.size() > max_inputs)
         return user_error(fmt::format("{} images are read, of the frame and of the file; at most {} are allowed",
-                                      function.inputs.size(), most_inputs));
+                                      function.inputs.size(), max_inputs));
     return {};
 }
 

@@ -24,12 +24,12 @@ constexpr std::array stored_formats{VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32
 
 Result<> add_buffer(Description& out, FileBuffer buffer, std::string_view name, std::string_view count) {
     if (auto ok = check_own_name(out, name); !ok) return ok;
-    const auto number = parse_count(count, most_numbers);
+    const auto number = parse_count(count, max_numbers);
     if (!number)
         return user_error(fmt::format("{}: {}: expected a count in [1, {}]", name,
-                                      count.empty() ? "nothing" : printable(count), most_numbers));
-    if (out.buffers.size() == most_images)
-        return user_error(fmt::format("{}: a file has at most {} buffers and values", name, most_images));
+                                      count.empty() ? "nothing" : printable(count), max_numbers));
+    if (out.buffers.size() == max_images)
+        return user_error(fmt::format("{}: a file has at most {} buffers and values", name, max_images));
     buffer.name = out.keep(name);
     buffer.count = *number;
     out.buffers.push_back(buffer);
@@ -46,9 +46,9 @@ std::pair<std::string_view, std::string_view> halves(std::string_view text) {
 std::optional<std::array<std::uint32_t, 2>> parse_workgroup(std::string_view text) {
     const std::size_t cross = text.find('x');
     if (cross == std::string_view::npos) return std::nullopt;
-    const auto width = parse_count(text.substr(0, cross), most_invocations),
-               height = parse_count(text.substr(cross + 1), most_invocations);
-    if (!width || !height || *width * *height > most_invocations) return std::nullopt;
+    const auto width = parse_count(text.substr(0, cross), max_invocations),
+               height = parse_count(text.substr(cross + 1), max_invocations);
+    if (!width || !height || *width * *height > max_invocations) return std::nullopt;
     return std::array{*width, *height};
 }
 
@@ -77,9 +77,9 @@ Result<> take_outputs(Description& out, FileFunction& pass) {
                                           pass.name, name));
         pass.outputs.push_back((*image)->name);
     }
-    if (pass.buffers.size() > most_buffers)
+    if (pass.buffers.size() > max_buffers)
         return user_error(fmt::format("pass {} has {} buffers and values; at most {} are allowed", pass.name,
-                                      pass.buffers.size(), most_buffers));
+                                      pass.buffers.size(), max_buffers));
     if (pass.outputs.empty() && pass.groups[0] == 0 && pass.inputs.empty())
         return user_error(
             fmt::format("pass {}: no image whose size says how many groups there are: give their number, "
@@ -95,9 +95,9 @@ std::optional<std::uint32_t> bytes_of(std::span<const std::string_view> words) {
     if (!type) return std::nullopt;
     std::uint64_t bytes = *type;
     for (std::size_t i = 2; i < words.size(); i += 3) {
-        const auto count = parse_count(words[i + 1], most_shared_bytes);
+        const auto count = parse_count(words[i + 1], max_shared_bytes);
         if (words[i] != "[" || !count || words[i + 2] != "]") return std::nullopt;
-        bytes = std::min<std::uint64_t>(bytes * *count, most_shared_bytes + 1);
+        bytes = std::min<std::uint64_t>(bytes * *count, max_shared_bytes + 1);
     }
     return static_cast<std::uint32_t>(bytes);
 }
@@ -133,13 +133,13 @@ Result<FileFunction> read_compute(Description& out, std::string_view text) {
     if (auto ok = check_name(pass.name); !ok) return failure(std::move(ok));
     if (!own)
         return user_error(fmt::format("pass {}: workgroup {}: expected WIDTHxHEIGHT, at most {} together", pass.name,
-                                      workgroup.empty() ? "nothing" : printable(workgroup), most_invocations));
+                                      workgroup.empty() ? "nothing" : printable(workgroup), max_invocations));
     pass.workgroup = *own;
     if (!groups.empty()) {
         const auto number = parse_workgroup(groups);
         if (!number || !head.empty())
             return user_error(fmt::format("pass {}: groups {}: expected WIDTHxHEIGHT, at most {} together", pass.name,
-                                          printable(number ? head : groups), most_invocations));
+                                          printable(number ? head : groups), max_invocations));
         pass.groups = *number;
     }
     auto made =
@@ -162,8 +162,8 @@ Result<> read_shared(FileFunction& function, std::string_view code, std::size_t&
                 return user_error(
                     fmt::format("shared: expected `shared TYPE NAME[COUNT];`, TYPE one of {}", listed(types)));
             bytes += *size;
-            if (bytes > most_shared_bytes)
-                return user_error(fmt::format("shared: more than {} bytes; as many are allowed", most_shared_bytes));
+            if (bytes > max_shared_bytes)
+                return user_error(fmt::format("shared: more than {} bytes; as many are allowed", max_shared_bytes));
             words.reset();
         } else if (words && token.kind != Token::Kind::Blank) {
             words->push_back(token.text);

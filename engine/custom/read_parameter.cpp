@@ -111,8 +111,8 @@ Result<> check_parameter_name(const Description& out, std::string_view name) {
         return user_error(fmt::format("{}: a key of every stack entry", name));
     if (std::ranges::find(out.rows, name, &ParamInfo::name) != out.rows.end())
         return user_error(fmt::format("{}: described twice", name));
-    if (out.rows.size() == most_parameters)
-        return user_error(fmt::format("{}: a file has at most {} parameters", name, most_parameters));
+    if (out.rows.size() == max_parameters)
+        return user_error(fmt::format("{}: a file has at most {} parameters", name, max_parameters));
     return {};
 }
 

@@ -83,12 +83,12 @@ Result<> read_table(FileImage& image, std::string_view text) {
         return user_error(
             fmt::format("{}: expected `@table {}: WIDTHxHEIGHT FORMAT = VALUE, VALUE`", image.name, image.name));
     const std::size_t cross = extent.find('x');
-    const auto width = parse_count(extent.substr(0, cross), most_table_texels);
+    const auto width = parse_count(extent.substr(0, cross), max_table_texels);
     const auto height =
-        cross == std::string_view::npos ? std::nullopt : parse_count(extent.substr(cross + 1), most_table_texels);
-    if (!width || !height || std::size_t{*width} * *height > most_table_texels)
+        cross == std::string_view::npos ? std::nullopt : parse_count(extent.substr(cross + 1), max_table_texels);
+    if (!width || !height || std::size_t{*width} * *height > max_table_texels)
         return user_error(fmt::format("{}: {}: expected WIDTHxHEIGHT, at most {} texels", image.name, printable(extent),
-                                      most_table_texels));
+                                      max_table_texels));
     const auto format = named(table_formats, format_name);
     if (!format)
         return user_error(
@@ -103,8 +103,8 @@ Result<> check_image_name(Description& out, FileImage::Kind kind, std::string_vi
     const std::string previous = std::string(name) + std::string(previous_end);
     if (kind == FileImage::Kind::History && out.find_image(previous) != nullptr)
         return user_error(fmt::format("{}: declared twice", name));
-    if (out.images.size() == most_images)
-        return user_error(fmt::format("{}: a file has at most {} images", name, most_images));
+    if (out.images.size() == max_images)
+        return user_error(fmt::format("{}: a file has at most {} images", name, max_images));
     return {};
 }
 
@@ -151,8 +151,8 @@ Result<> read_inputs(Description& from, FileFunction& out, const std::string& re
         }
         if (auto ok = check_input(from, reader, name); !ok) return ok;
         out.inputs.push_back(from.keep(name));
-        if (out.inputs.size() > most_inputs)
-            return user_error(fmt::format("{} reads more than {} images", reader, most_inputs));
+        if (out.inputs.size() > max_inputs)
+            return user_error(fmt::format("{} reads more than {} images", reader, max_inputs));
     }
     return {};
 }
@@ -212,10 +212,10 @@ Result<> read_result(Description& out, std::string_view text) {
 }
 
 Result<> read_pre_roll(Description& out, std::string_view text) {
-    const auto frames = text == "0" ? std::optional(0u) : parse_count(text, most_pre_roll);
+    const auto frames = text == "0" ? std::optional(0u) : parse_count(text, max_pre_roll);
     if (!frames)
         return user_error(
-            fmt::format("@pre_roll {}: expected a number of frames in [0, {}]", printable(text), most_pre_roll));
+            fmt::format("@pre_roll {}: expected a number of frames in [0, {}]", printable(text), max_pre_roll));
     out.pre_roll = frames;
     return {};
 }
@@ -227,8 +227,8 @@ Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string
         return user_error(fmt::format("{}: is taken by the notation or by GLSL; choose another name", name));
     if (std::ranges::find(out.passes, name, &FileFunction::name) != out.passes.end())
         return user_error(fmt::format("pass {}: declared twice", name));
-    if (out.passes.size() == most_passes)
-        return user_error(fmt::format("pass {}: a file has at most {} passes", name, most_passes));
+    if (out.passes.size() == max_passes)
+        return user_error(fmt::format("pass {}: a file has at most {} passes", name, max_passes));
     const std::size_t colon = text.find(':'), arrow = text.find("->");
     if (colon == std::string_view::npos || arrow == std::string_view::npos || arrow < colon)
         return user_error(fmt::format("pass {}: expected `{}`", name, usage));
@@ -239,9 +239,9 @@ Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string
         return failure(std::move(ok));
     for (std::string_view rest = trimmed(text.substr(arrow + 2)); !rest.empty();)
         pass.outputs.push_back(next_word(rest));
-    if (pass.outputs.size() > most_outputs)
+    if (pass.outputs.size() > max_outputs)
         return user_error(
-            fmt::format("pass {} writes {} images; at most {} are allowed", name, pass.outputs.size(), most_outputs));
+            fmt::format("pass {} writes {} images; at most {} are allowed", name, pass.outputs.size(), max_outputs));
     return pass;
 }
 

@@ -138,7 +138,7 @@ TEST(CustomPasses, CountsHaveBounds) {
     std::string some = images.substr(0, images.find("// @image a9")),
                 writers = passes.substr(0, passes.find("// @pass a9"));
     EXPECT_EQ(error_of_lines(some + writers + reads), "my.glsl:20: @end reads more than 8 images");
-    EXPECT_EQ(error_of_file(std::string(CustomEffect::most_bytes + 1, ' ')),
+    EXPECT_EQ(error_of_file(std::string(CustomEffect::max_bytes + 1, ' ')),
               "my.glsl: 65537 bytes, the file of an effect has at most 65536");
 }
 

@@ -176,13 +176,13 @@ struct Schedule::State {
 Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     std::int32_t last_gate = -1;
     std::size_t barrier_bound = 0;
-    std::uint32_t most_mips = 1;
-    for (const Slot& slot : solution->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
+    std::uint32_t max_mips = 1;
+    for (const Slot& slot : solution->slots) max_mips = std::max(max_mips, slot.desc.mip_levels);
     for (const PassDesc& pass : solution->passes) {
         first_read.push_back(static_cast<std::uint32_t>(read_versions.size()));
         read_versions.resize(read_versions.size() + pass.reads.size(), none);
         last_gate = std::max(last_gate, pass.gate);
-        barrier_bound += (pass.reads.size() + pass.writes.size()) * most_mips;
+        barrier_bound += (pass.reads.size() + pass.writes.size()) * max_mips;
     }
     for (const VersionRecord& record : solution->versions) last_gate = std::max(last_gate, record.gate);
     gates.resize(static_cast<std::size_t>(last_gate + 1), 1);

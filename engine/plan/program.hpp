@@ -21,14 +21,14 @@ namespace darkroom::plan {
 
 /// Vectors from the CPU in one pass of an effect, and in one fused kernel beside the parameters of its entries. With
 /// them a block stays within the 16 KiB that every device allows.
-inline constexpr std::uint32_t most_custom_vectors = 512;
-inline constexpr std::uint32_t most_fused_vectors = 96;
+inline constexpr std::uint32_t max_custom_vectors = 512;
+inline constexpr std::uint32_t max_fused_vectors = 96;
 /// Entries in one fused kernel, and entries of a plan that join a kernel begun by another. A compiler's time grows
 /// faster than its kernel, and a kernel of one entry serves all entries of that effect.
-inline constexpr std::size_t most_fused_entries = 16, most_joined_entries = 96;
+inline constexpr std::size_t max_fused_entries = 16, max_joined_entries = 96;
 /// Kernels of a plan that do not run where their entries are off. A picture behind such a kernel may be any of those
 /// before it, so all of them keep their memory; behind the kernels that always run two pictures are enough.
-inline constexpr std::size_t most_gated_kernels = 32;
+inline constexpr std::size_t max_gated_kernels = 32;
 
 /// A stack entry as the Composer keeps it.
 struct Entry {

@@ -12,7 +12,7 @@ namespace darkroom {
 namespace {
 
 struct Control {
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * most_descriptors)> bytes{};
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * max_descriptors)> bytes{};
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ bool receive_all(int socket, void* data, std::size_t size, std::vector<Descripto
         if (descriptors != nullptr)
             for (cmsghdr* head = CMSG_FIRSTHDR(&message); head != nullptr; head = CMSG_NXTHDR(&message, head)) {
                 if (head->cmsg_level != SOL_SOCKET || head->cmsg_type != SCM_RIGHTS) continue;
-                std::array<int, most_descriptors> numbers{};
+                std::array<int, max_descriptors> numbers{};
                 const std::size_t count = (head->cmsg_len - CMSG_LEN(0)) / sizeof(int);
                 std::memcpy(numbers.data(), CMSG_DATA(head), count * sizeof(int));
                 for (std::size_t i = 0; i < count; ++i) descriptors->emplace_back(numbers[i]);

@@ -11,7 +11,7 @@
 namespace darkroom {
 
 /// Files that go with one message at most.
-inline constexpr std::size_t most_descriptors = 2;
+inline constexpr std::size_t max_descriptors = 2;
 
 /// All of it, and the files with its first byte; false: the other side is gone, or late.
 [[nodiscard]] bool send_all(int socket, const void* data, std::size_t size, std::span<const int> descriptors = {});

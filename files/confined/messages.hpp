@@ -23,7 +23,7 @@ namespace darkroom {
 inline constexpr bool is_sanitized = DARKROOM_IS_SANITIZED;
 
 /// Longer ones are no error texts.
-inline constexpr std::uint32_t most_error_bytes = 65536;
+inline constexpr std::uint32_t max_error_bytes = 65536;
 
 /// The argument that lets a process go on whose calls are not held back (ConfinedProcess::allow_unconfined).
 inline constexpr std::string_view allow_unconfined_flag = "--allow-unconfined";

@@ -87,7 +87,7 @@ Result<> ConfinedProcess::start(std::span<const std::string> arguments) {
     limit_wait(seconds_to_start);
     ConfinedGreeting greeting;
     std::string error;
-    bool is_there = receive(&greeting, sizeof greeting) && greeting.error_size <= most_error_bytes;
+    bool is_there = receive(&greeting, sizeof greeting) && greeting.error_size <= max_error_bytes;
     if (is_there) {
         error.resize(greeting.error_size);
         is_there = receive(error.data(), error.size());
@@ -108,8 +108,8 @@ void ConfinedProcess::limit_memory(std::uint64_t bytes) const {
 }
 
 void ConfinedProcess::limit_wait(std::uint32_t seconds) const {
-    if (most_seconds_ == seconds) return;
-    most_seconds_ = seconds;
+    if (max_seconds_ == seconds) return;
+    max_seconds_ = seconds;
     const timeval most{.tv_sec = static_cast<time_t>(seconds), .tv_usec = 0};
     setsockopt(socket_.number(), SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
     setsockopt(socket_.number(), SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
@@ -148,9 +148,9 @@ std::string ConfinedProcess::stop() {
         }
     }
     process_ = -1;
-    std::string out = is_late_ ? fmt::format("took more than {} s", most_seconds_) : end_of(status);
+    std::string out = is_late_ ? fmt::format("took more than {} s", max_seconds_) : end_of(status);
     is_late_ = false;
-    most_seconds_ = 0;
+    max_seconds_ = 0;
     return out;
 }
 

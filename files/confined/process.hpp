@@ -50,7 +50,7 @@ class ConfinedProcess {
     std::mutex mutex_;  // of the socket's number and of is_cancelled_
     bool is_cancelled_ = false;
     mutable bool is_late_ = false;
-    mutable std::uint32_t most_seconds_ = 0;
+    mutable std::uint32_t max_seconds_ = 0;
     pid_t process_ = -1;
     Descriptor socket_;
 };

@@ -96,7 +96,7 @@ class Server {
         if (!receive_all(socket_of_program, &request, sizeof request, &files)) return false;
         std::vector<DecodePlace> places(request.place_count);
         if (!receive_all(socket_of_program, places.data(), places.size() * sizeof(DecodePlace))) return false;
-        alarm(request.most_seconds);
+        alarm(request.max_seconds);
         std::vector<std::byte> description;
         Result<> done;
         try {
@@ -109,7 +109,7 @@ class Server {
         }
         if (!done) picture_ = {};
         alarm(0);
-        const std::string error = done ? std::string() : done.error().text.substr(0, most_error_bytes);
+        const std::string error = done ? std::string() : done.error().text.substr(0, max_error_bytes);
         const DecodeReply reply{.outcome = !done                        ? DecodeOutcome::Error
                                            : picture_.source == nullptr ? DecodeOutcome::NeedsOpenImageIo
                                                                         : DecodeOutcome::Done,

@@ -9,7 +9,7 @@ namespace darkroom {
 namespace {
 
 // As checks of files have them (image/exr/check.cpp).
-constexpr std::uint32_t most_side = 65536, most_parts = 256, most_channels = 1024, most_names = 65536;
+constexpr std::uint32_t max_side = 65536, max_parts = 256, max_channels = 1024, max_names = 65536;
 constexpr int farthest = 1 << 30;
 
 class Packer {
@@ -45,7 +45,7 @@ class Unpacker {
         bytes_ = bytes_.subspan(sizeof value);
     }
     void take(std::string& text) {
-        const std::uint32_t size = count(1, most_reply_bytes);
+        const std::uint32_t size = count(1, max_reply_bytes);
         text.assign(reinterpret_cast<const char*>(bytes_.data()), size);
         bytes_ = bytes_.subspan(size);
     }
@@ -77,9 +77,9 @@ class Unpacker {
 void take_part(Unpacker& from, FilePart& part) {
     from.take(part.name);
     from.take(part.view);
-    from.take(part.views, 4, most_names);
+    from.take(part.views, 4, max_names);
     from.take(part.compression);
-    from.take(part.channels, 4, most_channels);
+    from.take(part.channels, 4, max_channels);
     for (std::size_t i = 0; i < part.channels.size(); ++i) {
         std::uint32_t kind = 0;
         from.take(kind);
@@ -129,15 +129,15 @@ std::vector<std::byte> packed(const PictureDescription& description) {
 std::optional<PictureDescription> unpacked(std::span<const std::byte> bytes) {
     Unpacker from(bytes);
     PictureDescription out;
-    out.parts.resize(from.count(1, most_parts));
+    out.parts.resize(from.count(1, max_parts));
     for (auto& [part, row_unit, attributes] : out.parts) {
         take_part(from, part);
         from.take(row_unit);
-        from.expect(row_unit >= 1 && row_unit <= most_side);
-        attributes.resize(from.count(8, most_names));
+        from.expect(row_unit >= 1 && row_unit <= max_side);
+        attributes.resize(from.count(8, max_names));
         for (auto& [name, numbers] : attributes) {
             from.take(name);
-            from.take(numbers, sizeof(double), most_reply_bytes);
+            from.take(numbers, sizeof(double), max_reply_bytes);
         }
         if (!from.is_right()) return std::nullopt;
     }

@@ -22,7 +22,7 @@ struct DecodeRequest {
     std::uint64_t memory_size = 0;  ///< bytes; 0: that of the last request is large enough
     std::uint32_t kind = 0;         ///< FileKind
     std::uint32_t max_threads = 0;
-    std::uint32_t most_seconds = 0;             ///< after which darkroom_decode ends itself
+    std::uint32_t max_seconds = 0;              ///< after which darkroom_decode ends itself
     std::uint32_t part = 0, row = 0, rows = 0;  ///< no rows: to be described
     std::uint32_t place_count = 0;
 };
@@ -41,9 +41,9 @@ struct DecodeReply {
 };
 
 /// The largest description, and error: attributes of OpenEXR have 32 MiB (image/exr/check.hpp).
-inline constexpr std::uint32_t most_reply_bytes = std::uint32_t{256} << 20;
+inline constexpr std::uint32_t max_reply_bytes = std::uint32_t{256} << 20;
 /// Channels that are read at once.
-inline constexpr std::uint32_t most_places = 1024;
+inline constexpr std::uint32_t max_places = 1024;
 
 struct PictureDescription {
     struct Attribute {

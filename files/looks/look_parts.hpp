@@ -61,9 +61,9 @@ struct LookTarget {
 };
 /// Of "bloom_intensity", or "ENTRY.parameter". Errors begin with `shown`, and name the nearest.
 [[nodiscard]] Result<LookTarget> find_target(Look& look, std::string_view key, const std::string& shown);
-inline constexpr std::size_t most_pulses = 256, most_layers = 32;
+inline constexpr std::size_t max_pulses = 256, max_layers = 32;
 /// Of what a pulse adds, up or down.
-inline constexpr double most_amount = 1e6;
+inline constexpr double max_amount = 1e6;
 /// What pulses and layers add to a file.
 void write_modulation(std::string& out, const Look& look);
 /// Does a pulse or a layer move the entry of this name?

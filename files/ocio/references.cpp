@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of all tables together.
-constexpr std::size_t most_bytes = std::size_t{32} << 20, most_tables = 64;
+constexpr std::size_t max_bytes = std::size_t{32} << 20, max_tables = 64;
 
 struct Found {
     XML_Parser parser = nullptr;
@@ -89,7 +89,7 @@ class Walk {
 
     Result<Total> total(const fs::path& file) {
         if (const auto known = totals_.find(file); known != totals_.end()) return known->second;
-        const auto text = read_file(file, {.max_size = most_bytes, .is_path_in_errors = false});
+        const auto text = read_file(file, {.max_size = max_bytes, .is_path_in_errors = false});
         if (!text) return failure(text.error());
         open_.push_back(file);
         const Found found = references_of(*text);
@@ -111,9 +111,9 @@ class Walk {
             is_placed_ = false;
             out.bytes += next->bytes;
             out.tables += next->tables;
-            if (out.bytes > most_bytes || out.tables > most_tables)
+            if (out.bytes > max_bytes || out.tables > max_tables)
                 return user_error(fmt::format("{} tables of {} bytes in all that it names, at most {} of {} are read",
-                                              out.tables, out.bytes, most_tables, most_bytes));
+                                              out.tables, out.bytes, max_tables, max_bytes));
         }
         open_.pop_back();
         totals_.emplace(file, out);

@@ -16,7 +16,7 @@ namespace darkroom {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
-constexpr std::size_t most_comments = 1000;
+constexpr std::size_t max_comments = 1000;
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blanks);
@@ -82,7 +82,7 @@ class CubeParser {
     Result<> read_line(std::string_view line) {
         if (line.empty()) return {};
         if (line.starts_with('#')) {
-            if (rows_ == 0 && out_.comments.size() < most_comments)
+            if (rows_ == 0 && out_.comments.size() < max_comments)
                 out_.comments.emplace_back(trimmed(one_line(line.substr(1))));
             return {};
         }

@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t max_dots = 64;
 
 // Of the whole text: a table takes some 200 bytes, and its dot two.
-constexpr std::size_t most_dots = 1U << 18U;
+constexpr std::size_t max_file_dots = 1U << 18U;
 
 std::size_t dots_of_keys(std::string_view line) {
     const auto is_digit = [&](std::size_t i) {
@@ -98,8 +98,8 @@ std::string unit_hint(std::string_view text, std::size_t line) {
 }  // namespace
 
 Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name) {
-    if (text.size() > most_toml_bytes)
-        return user_error(fmt::format("{}: {} bytes, at most {} are read", shown_name, text.size(), most_toml_bytes));
+    if (text.size() > max_toml_bytes)
+        return user_error(fmt::format("{}: {} bytes, at most {} are read", shown_name, text.size(), max_toml_bytes));
     // Such as a frame that was named where a look belongs.
     if (text.find('\0') != std::string_view::npos)
         return user_error(fmt::format("{}: a zero byte; allowed is TOML, text in UTF-8", shown_name));
@@ -111,8 +111,8 @@ Result<toml::table> parse_toml(std::string_view text, std::string_view shown_nam
             return user_error(fmt::format("{}:{}:1: the line holds more than {} dots, keys may not nest so deep",
                                           shown_name, line, max_dots));
         dots += own;
-        if (dots > most_dots)
-            return user_error(fmt::format("{}:{}:1: more than {} dots in keys", shown_name, line, most_dots));
+        if (dots > max_file_dots)
+            return user_error(fmt::format("{}:{}:1: more than {} dots in keys", shown_name, line, max_file_dots));
         start = end + 1;
     }
     toml::parse_result parsed = toml::parse(text);

@@ -14,7 +14,7 @@
 namespace darkroom {
 
 /// The largest file of any kind. A tree takes up to 40 times its text.
-inline constexpr std::size_t most_toml_bytes = std::size_t{4} << 20;
+inline constexpr std::size_t max_toml_bytes = std::size_t{4} << 20;
 
 /// Syntax errors name the place; text that is too long, or that nests so deep that a reader could run out of stack, is
 /// refused first.

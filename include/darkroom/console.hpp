@@ -34,7 +34,7 @@ struct ExecuteOptions {
     bool suggests = true;      ///< unknown names are answered with the nearest, which takes longer than all else
     LogSink print{};           ///< instead of the console's
     /// Of the commands that are run, files included; what comes behind is left out, and printed to be.
-    std::uint32_t most_commands = 10000;
+    std::uint32_t max_commands = 10000;
 };
 
 class Console {

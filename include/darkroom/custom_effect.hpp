@@ -74,7 +74,7 @@ namespace darkroom {
 /// Moving it keeps info() where it is.
 class CustomEffect {
   public:
-    static constexpr std::size_t most_bytes = 65536;  ///< of a file
+    static constexpr std::size_t max_bytes = 65536;  ///< of a file
 
     /// Errors read "name:line: ...".
     [[nodiscard]] static Result<CustomEffect> load(const std::string& file);

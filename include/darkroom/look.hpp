@@ -147,7 +147,7 @@ struct LookOptions {
     ResourceLoader load_resource{};  ///< none: colour tables in .cube files alone
     bool reads_tables = true;        ///< false: no .cube file is read, either; load_resource brings all
     /// Numbers in all tables and pictures that the look names together: two of the largest tables.
-    std::size_t most_resource_numbers = std::size_t{1} << 27;
+    std::size_t max_resource_numbers = std::size_t{1} << 27;
     std::filesystem::path folder;  ///< that files are relative to; empty: read_look takes the look's own
 };
 

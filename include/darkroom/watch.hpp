@@ -12,7 +12,7 @@
 
 namespace darkroom {
 
-inline constexpr std::size_t most_watches = 1024;  ///< of a plan
+inline constexpr std::size_t max_watches = 1024;  ///< of a plan
 
 /// One picture of a plan: what an entry makes of its input, or an image by its name.
 struct Watch {

@@ -66,11 +66,11 @@ bool is_asked_for(const Options& options, const std::vector<std::string>& names)
 
 /// Whole or not at all: its rows are made together.
 Result<> add_sequence(const Options& options, Device& device, VkExtent2D extent, Report& report) {
-    constexpr std::uint32_t most_rounds = 3;
+    constexpr std::uint32_t max_rounds = 3;
     if (options.frames == 0 || !is_asked_for(options, sequence_row_names())) return {};
     auto sequence = measure_sequence(device, {.extent = extent,
                                               .frames = options.frames,
-                                              .rounds = std::min(options.rounds, most_rounds),
+                                              .rounds = std::min(options.rounds, max_rounds),
                                               .device = options.device});
     if (!sequence) return failure(std::move(sequence));
     report.sequence = std::move(sequence->rows);

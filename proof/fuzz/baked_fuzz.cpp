@@ -65,7 +65,7 @@ std::vector<std::string> seeds() {
     return out;
 }
 
-const Registration baked({.name = "baked", .run = run, .seeds = seeds, .most_mebibytes = 16});
+const Registration baked({.name = "baked", .run = run, .seeds = seeds, .max_mebibytes = 16});
 
 }  // namespace
 }  // namespace darkroom::fuzz::baked_fuzz

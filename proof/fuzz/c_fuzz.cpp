@@ -15,7 +15,7 @@
 namespace darkroom::fuzz::c_fuzz {
 namespace {
 
-constexpr std::uint32_t most_calls = 64, most_entries = 10, unset = 0xdeadbeef;
+constexpr std::uint32_t max_calls = 64, max_entries = 10, unset = 0xdeadbeef;
 
 class Caller {
   public:
@@ -34,7 +34,7 @@ class Caller {
     }
 
     std::string run() {
-        for (std::uint32_t i = 0; i < most_calls && !bytes_.is_empty() && wrong_.empty(); ++i)
+        for (std::uint32_t i = 0; i < max_calls && !bytes_.is_empty() && wrong_.empty(); ++i)
             (this->*calls[bytes_.below(calls.size())])();
         return wrong_;
     }
@@ -87,7 +87,7 @@ class Caller {
     void add() {
         std::uint32_t count = 0;
         darkroom_composer_size(composer_, &count);
-        if (count >= most_entries) return;
+        if (count >= max_entries) return;
         const std::string name = bytes_.text();
         DarkroomEntryDesc desc{.struct_size = sizeof desc};
         desc.blend = static_cast<DarkroomBlendMode>(bytes_.below(10));

@@ -84,7 +84,7 @@ std::string run(std::string_view input) {
 
 std::vector<std::string> seeds() { return {std::string(cache().whole())}; }
 
-const Registration entries({.name = "cache", .run = run, .seeds = seeds, .most_mebibytes = 16});
+const Registration entries({.name = "cache", .run = run, .seeds = seeds, .max_mebibytes = 16});
 
 }  // namespace
 }  // namespace darkroom::fuzz::cache_fuzz

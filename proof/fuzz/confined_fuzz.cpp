@@ -35,8 +35,8 @@ std::string wrong_end(const Error& error) {
 
 std::string wrong_drawing(std::string_view document) {
     static SvgProcess process;
-    constexpr std::uint32_t most_elements = 1000, width = 48, height = 27;
-    if (const Result<> checked = check_svg(document, most_elements); !checked) return {};
+    constexpr std::uint32_t max_elements = 1000, width = 48, height = 27;
+    if (const Result<> checked = check_svg(document, max_elements); !checked) return {};
     const Result<HudPicture> drawn = process.draw(document, width, height);
     if (!drawn) return wrong_end(drawn.error());
     return drawn->rgba.size() == std::size_t{4} * width * height ? std::string() : "a drawing has another size";
@@ -71,7 +71,7 @@ std::vector<std::string> seeds() {
     return out;
 }
 
-const Registration confined({.name = "confined", .run = run, .seeds = seeds, .longest = 8192, .most_mebibytes = 1100});
+const Registration confined({.name = "confined", .run = run, .seeds = seeds, .longest = 8192, .max_mebibytes = 1100});
 
 }  // namespace
 }  // namespace darkroom::fuzz::confined_fuzz

@@ -31,7 +31,7 @@ std::string wrong_values(const Composer& composer) {
 
 std::string run(std::string_view input) {
     test::ConsoleBed bed;
-    bed.console->execute(input, {.most_commands = 200});
+    bed.console->execute(input, {.max_commands = 200});
     const MemoryFile file(input);
     if (const Result<> done = bed.console->read_config(file.path()); !done)
         if (std::string wrong = wrong_error(done.error()); !wrong.empty()) return wrong;

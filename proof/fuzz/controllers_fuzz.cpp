@@ -14,7 +14,7 @@
 namespace darkroom::fuzz::controllers_fuzz {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_bytes = std::size_t{16} << 20;
 
 std::vector<std::uint32_t> words_of(const Composer& composer, bool is_current) {
     std::vector<std::uint32_t> out;
@@ -38,7 +38,7 @@ std::string run(std::string_view input) {
     if (const Result<> loaded = created->load_text("a", input); !loaded)
         if (std::string wrong = wrong_error(loaded.error()); !wrong.empty()) return wrong;
     for (int i = 0; i < 3; ++i) created->frame({.time = i / 60.0, .is_hud_visible = i != 1, .game = &game});
-    if (created->bytes() > most_bytes) return fmt::format("scripts hold {} bytes", created->bytes());
+    if (created->bytes() > max_bytes) return fmt::format("scripts hold {} bytes", created->bytes());
     created->unload("a");
     if (!created->slots().empty()) return created->slots().front() + " is left";
     return words_of(bed.composer, true) == words_of(bed.composer, false) ? std::string() : "an override is left";

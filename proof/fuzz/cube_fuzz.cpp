@@ -52,7 +52,7 @@ std::vector<std::string> seeds() {
     return out;
 }
 
-const Registration cube({.name = "cube", .run = run, .seeds = seeds, .most_mebibytes = 4});
+const Registration cube({.name = "cube", .run = run, .seeds = seeds, .max_mebibytes = 4});
 
 }  // namespace
 }  // namespace darkroom::fuzz::cube_fuzz

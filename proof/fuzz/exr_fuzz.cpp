@@ -15,7 +15,7 @@
 namespace darkroom::fuzz::exr_fuzz {
 namespace {
 
-constexpr std::uint64_t most_samples = 1 << 20;
+constexpr std::uint64_t max_samples = 1 << 20;
 constexpr std::byte untouched{0xa5};
 
 /// All rows of some channels, between two rows that nobody may touch.
@@ -23,7 +23,7 @@ std::string wrong_rows(PictureSource& source, std::size_t number) {
     const FilePart& part = source.parts()[number];
     if (part.kinds.size() != part.channels.size()) return "a part has other kinds than channels";
     const std::size_t channels = std::min<std::size_t>(part.channels.size(), 5);
-    if (std::uint64_t{part.width} * part.height * channels > most_samples) return {};
+    if (std::uint64_t{part.width} * part.height * channels > max_samples) return {};
     const std::size_t pixel = channels * sizeof(float), row = pixel * part.width;
     std::vector<std::byte> memory(row * (part.height + std::size_t{2}), untouched);
     std::vector<SamplePlace> places;
@@ -91,7 +91,7 @@ std::vector<std::string> seeds() {
     return out;
 }
 
-const Registration exr({.name = "exr", .run = run, .seeds = seeds, .longest = 8192, .most_mebibytes = 1100});
+const Registration exr({.name = "exr", .run = run, .seeds = seeds, .longest = 8192, .max_mebibytes = 1100});
 
 }  // namespace
 }  // namespace darkroom::fuzz::exr_fuzz

@@ -17,7 +17,7 @@
 namespace darkroom::fuzz::glsl_fuzz {
 namespace {
 
-constexpr unsigned most_seconds = 8;
+constexpr unsigned max_seconds = 8;
 
 std::string wrong_kernels(const CustomEffect& effect) {
     Composer composer(Device::assumed());
@@ -40,7 +40,7 @@ std::string in_child(std::string (*run)(const CustomEffect&), const CustomEffect
     if (::pipe(pipe.data()) != 0) std::abort();
     const pid_t child = fork();
     if (child == 0) {
-        alarm(most_seconds);
+        alarm(max_seconds);
         const std::string wrong = run(effect);
         const ssize_t written = write(pipe[1], wrong.data(), wrong.size());
         _exit(written == static_cast<ssize_t>(wrong.size()) ? 0 : 1);

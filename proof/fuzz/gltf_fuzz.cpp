@@ -150,8 +150,8 @@ std::vector<std::string> seeds() {
 }
 
 // What is free however small a file is.
-constexpr std::size_t most_mebibytes = 160;
-const Registration gltf({"gltf", run, seeds, 16384, most_mebibytes});
+constexpr std::size_t max_mebibytes = 160;
+const Registration gltf({"gltf", run, seeds, 16384, max_mebibytes});
 
 }  // namespace
 }  // namespace darkroom::fuzz::gltf_fuzz

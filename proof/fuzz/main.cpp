@@ -66,7 +66,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** values) {
     arguments.emplace_back((*values)[0]);
     // Before what was typed, which wins.
     arguments.push_back(fmt::format("-max_len={}", chosen->longest));
-    arguments.push_back(fmt::format("-malloc_limit_mb={}", chosen->most_mebibytes));
+    arguments.push_back(fmt::format("-malloc_limit_mb={}", chosen->max_mebibytes));
     arguments.emplace_back("-timeout=10");
     for (int i = 1; i < *count; ++i) {
         const std::string_view argument = (*values)[i];

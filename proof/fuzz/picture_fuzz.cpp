@@ -24,13 +24,13 @@ namespace darkroom::fuzz::picture_fuzz {
 namespace {
 
 using Opened = Result<std::unique_ptr<PictureSource>>;
-constexpr std::uint64_t most_samples = 1 << 20;
+constexpr std::uint64_t max_samples = 1 << 20;
 
 std::string wrong_rows(PictureSource& source) {
     const FilePart& part = source.parts().front();
     if (part.channels.empty() || part.kinds.size() != part.channels.size())
         return "a picture has other kinds than channels";
-    if (std::uint64_t{part.width} * part.height * part.channels.size() > most_samples) return {};
+    if (std::uint64_t{part.width} * part.height * part.channels.size() > max_samples) return {};
     std::vector<float> memory(std::size_t{part.width} * part.height * part.channels.size());
     std::vector<SamplePlace> places;
     for (std::size_t i = 0; i < part.channels.size(); ++i)
@@ -98,7 +98,7 @@ std::vector<std::string> seeds() {
     return out;
 }
 
-const Registration picture({.name = "picture", .run = run, .seeds = seeds, .longest = 16384, .most_mebibytes = 1100});
+const Registration picture({.name = "picture", .run = run, .seeds = seeds, .longest = 16384, .max_mebibytes = 1100});
 
 }  // namespace
 }  // namespace darkroom::fuzz::picture_fuzz

@@ -16,7 +16,7 @@
 namespace darkroom::fuzz::plan_fuzz {
 namespace {
 
-constexpr std::size_t most_entries = 5;
+constexpr std::size_t max_entries = 5;
 
 Handle handle(Bytes& bytes, const Composer& composer) {
     const std::uint32_t pick = bytes.below(composer.size() + 4);
@@ -41,7 +41,7 @@ void set_value(Bytes& bytes, Composer& composer, Handle entry, const ParamInfo& 
 }
 
 void fill(Bytes& bytes, Composer& composer) {
-    while (!bytes.is_empty() && composer.size() < most_entries) {
+    while (!bytes.is_empty() && composer.size() < max_entries) {
         const EffectInfo& info = *all_effects()[bytes.below(all_effects().size())];
         const std::uint32_t flags = bytes.below(256);
         EntryDesc desc{.is_ui = (flags & 1) != 0 && info.flat.is_of_ui, .enabled = (flags & 2) == 0};

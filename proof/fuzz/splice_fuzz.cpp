@@ -18,7 +18,7 @@ namespace {
 
 using edit::test::below;
 
-constexpr int most_edits = 6;
+constexpr int max_edits = 6;
 
 Result<> random_change(std::mt19937& random, Look& look) {
     // Of a look with entries of the interface alone, and without a table for
@@ -41,7 +41,7 @@ std::string run(std::string_view input) {
     std::mt19937 random(seed);
     edit::LookDocument document(std::move(*first), options);
     Look written = document.look();
-    for (int i = 0; i < most_edits; ++i) {
+    for (int i = 0; i < max_edits; ++i) {
         const Result<std::string> same = edit::splice_look(text, written, document.look());
         if (!same || *same != text) return fmt::format("without an edit: {}", same ? *same : same.error().text);
         if (below(random, 8) == 0)

@@ -13,7 +13,7 @@
 namespace darkroom::fuzz::strip_fuzz {
 namespace {
 
-constexpr std::size_t most_numbers = std::size_t{1} << 16;
+constexpr std::size_t max_numbers = std::size_t{1} << 16;
 
 std::string run(std::string_view input) {
     Bytes bytes(input);
@@ -24,7 +24,7 @@ std::string run(std::string_view input) {
     if (!edge) return wrong_error(edge.error());
     const std::size_t count = std::size_t{4} * image.width * image.height;
     if (std::uint64_t{*edge} * *edge * *edge != count / 4) return fmt::format("an edge of {}", *edge);
-    if (count > most_numbers) return {};
+    if (count > max_numbers) return {};
     for (std::size_t i = 0; i < count; ++i) image.rgba.push_back(bytes.is_empty() ? 0.5F : bytes.number());
     const Result<ColorTable> table = table_of_image(image);
     const bool is_finite = std::ranges::all_of(image.rgba, [](float value) { return std::isfinite(value); });

@@ -13,7 +13,7 @@
 namespace darkroom::fuzz::svg_fuzz {
 namespace {
 
-constexpr std::uint32_t most_elements = 20'000;
+constexpr std::uint32_t max_elements = 20'000;
 constexpr std::string_view hostile = "\"><image href='x'/>]]>&amp;{{health}}\n\xff";
 
 /// What stands in the class of the elements that are called so.
@@ -35,20 +35,20 @@ std::string wrong_filled(const std::string& filled, const SvgFacts& facts) {
     const HudClasses classes{{{"health", "low"}, true}, {{"health", "full"}, false}, {{"a", "b"}, true}};
     const std::string classed = with_classes(filled, facts, classes);
     SvgFacts of_classed, of_sized;
-    if (const Result<> checked = check_svg(classed, most_elements, &of_classed); !checked)
+    if (const Result<> checked = check_svg(classed, max_elements, &of_classed); !checked)
         return "with classes it is refused: " + checked.error().text;
     if (std::string wrong = wrong_classes(classed, of_classed, classes); !wrong.empty()) return wrong;
     if (of_classed.elements.size() != facts.elements.size()) return "classes change the elements";
     const std::string sized = at_size(classed, facts, 1920, 1080, 1.5);
     if (facts.reference_height > 0 || facts.root_at == 0) return {};
-    const Result<> checked = check_svg(sized, most_elements, &of_sized);
+    const Result<> checked = check_svg(sized, max_elements, &of_sized);
     if (!checked) return "at a size it is refused: " + checked.error().text;
     return of_sized.has_view_box ? std::string() : "at a size it has no viewBox";
 }
 
 std::string run(std::string_view input) {
     SvgFacts facts;
-    const Result<> checked = check_svg(input, most_elements, &facts);
+    const Result<> checked = check_svg(input, max_elements, &facts);
     const Result<SvgTemplate> parsed = SvgTemplate::parse(std::string(input));
     if (!checked)
         if (std::string wrong = wrong_error(checked.error()); !wrong.empty()) return wrong;
@@ -60,7 +60,7 @@ std::string run(std::string_view input) {
         if (std::ranges::count(*filled, mark) != std::ranges::count(input, mark))
             return fmt::format("a value brings a {} of its own:\n{}", mark, *filled);
     if (!checked) return {};
-    const Result<> checked_again = check_svg(*filled, most_elements, &facts);
+    const Result<> checked_again = check_svg(*filled, max_elements, &facts);
     return checked_again ? wrong_filled(*filled, facts) : wrong_error(checked_again.error());
 }
 

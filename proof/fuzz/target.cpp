@@ -16,7 +16,7 @@
 namespace darkroom::fuzz {
 namespace {
 
-constexpr std::uintmax_t most_seed_bytes = 65536;
+constexpr std::uintmax_t max_seed_bytes = 65536;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::vector<std::string> files(std::string_view pattern) {
     std::error_code error;
     for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error))
-        if (entry->is_regular_file(error) && entry->file_size(error) <= most_seed_bytes &&
+        if (entry->is_regular_file(error) && entry->file_size(error) <= max_seed_bytes &&
             entry->path().string().ends_with(pattern.substr(star + 1)))
             found.push_back(entry->path());
     std::ranges::sort(found);

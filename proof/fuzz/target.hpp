@@ -21,8 +21,8 @@ struct Target {
     std::string (*run)(std::string_view input);
     /// Inputs to begin with.
     std::vector<std::string> (*seeds)();
-    std::size_t longest = 4096;       ///< bytes of an input
-    std::size_t most_mebibytes = 64;  ///< of one allocation
+    std::size_t longest = 4096;      ///< bytes of an input
+    std::size_t max_mebibytes = 64;  ///< of one allocation
 };
 
 /// All targets that are linked.

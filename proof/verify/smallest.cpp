@@ -77,8 +77,8 @@ class Search {
 
 }  // namespace
 
-void make_smaller(Finding& finding, const Shows& shows, std::size_t most_tries) {
-    Search(finding, shows, most_tries).run();
+void make_smaller(Finding& finding, const Shows& shows, std::size_t max_tries) {
+    Search(finding, shows, max_tries).run();
 }
 
 }  // namespace darkroom::verify

@@ -10,7 +10,7 @@ namespace darkroom::verify {
 using Shows = std::function<bool(const Subject&, const Form&)>;
 
 /// Sets `smallest` and `smallest_extent`: drops steps, takes values back to defaults, halves the picture's sides, each
-/// for as long as `shows` says yes, which is asked at most `most_tries` times.
-void make_smaller(Finding& finding, const Shows& shows, std::size_t most_tries = 64);
+/// for as long as `shows` says yes, which is asked at most `max_tries` times.
+void make_smaller(Finding& finding, const Shows& shows, std::size_t max_tries = 64);
 
 }  // namespace darkroom::verify

@@ -11,7 +11,7 @@ namespace darkroom {
 struct SvgRequest {
     std::uint32_t document_size = 0;  ///< bytes
     std::uint32_t width = 0, height = 0;
-    std::uint32_t most_seconds = 0;  ///< after which darkroom_svg ends itself
+    std::uint32_t max_seconds = 0;  ///< after which darkroom_svg ends itself
 };
 struct SvgReply {
     std::uint32_t error_size = 0;  ///< bytes; 0: the pixels are there

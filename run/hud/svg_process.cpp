@@ -17,7 +17,7 @@ namespace darkroom {
 namespace {
 
 /// The layers of a document as large as budgets allow; beyond it librsvg ends the process.
-constexpr std::uint64_t most_memory = std::uint64_t{4} << 30;
+constexpr std::uint64_t max_memory = std::uint64_t{4} << 30;
 
 Failure failed(const Error& error) { return failure(Error{error.fault, fmt::format("drawing SVG: {}", error.text)}); }
 
@@ -31,7 +31,7 @@ Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t wid
     if (document.size() > limits_.document_bytes)
         return user_error(fmt::format("{} bytes: allowed are {}", document.size(), limits_.document_bytes));
     if (auto started = process_.start(); !started) return failed(started.error());
-    process_.limit_memory(most_memory);
+    process_.limit_memory(max_memory);
     // A drawing ends itself in time; a second more, and it hangs.
     process_.limit_wait(limits_.seconds + 1);
 
@@ -44,7 +44,7 @@ Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t wid
     std::string error;
     bool is_answered = process_.send(&request, sizeof request, {&descriptor, 1}) &&
                        process_.send(document.data(), document.size()) && process_.receive(&reply, sizeof reply) &&
-                       reply.error_size <= most_error_bytes;
+                       reply.error_size <= max_error_bytes;
     if (is_answered) {
         error.resize(reply.error_size);
         is_answered = process_.receive(error.data(), error.size());

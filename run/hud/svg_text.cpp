@@ -19,10 +19,10 @@ namespace darkroom {
 namespace {
 
 /// librsvg and what it is made of go into each by a call.
-constexpr std::size_t most_depth = 200;
-constexpr std::size_t most_scripts = 16;
-constexpr double most_reference_height = 65536;
-constexpr std::size_t most_zeros = 15;  // of a number's form: what a double holds
+constexpr std::size_t max_depth = 200;
+constexpr std::size_t max_scripts = 16;
+constexpr double max_reference_height = 65536;
+constexpr std::size_t max_zeros = 15;  // of a number's form: what a double holds
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view style_blanks = " \t\r\n\f";
 
@@ -101,7 +101,7 @@ std::string without_escapes(std::string_view text) {
 /// Reads a document from its beginning to its end, and stops at the first thing that is refused.
 class Checker {
   public:
-    Checker(std::string_view text, std::uint32_t most_elements) : text_(text), most_elements_(most_elements) {}
+    Checker(std::string_view text, std::uint32_t max_elements) : text_(text), max_elements_(max_elements) {}
     [[nodiscard]] SvgFacts take_facts() { return std::move(facts_); }
 
     Result<> run() {
@@ -194,8 +194,8 @@ class Checker {
     }
 
     void read_tag() {
-        if (++elements_ > most_elements_) {
-            refuse(fmt::format("more than {} elements", most_elements_));
+        if (++elements_ > max_elements_) {
+            refuse(fmt::format("more than {} elements", max_elements_));
             return;
         }
         const std::size_t begin = at_++;
@@ -216,7 +216,7 @@ class Checker {
                 is_in_style_ = element == "style" && rest().front() == '>';
                 style_.clear();
                 if (rest().front() == '>') open_.push_back({full_name, begin});
-                if (open_.size() > most_depth) refuse(fmt::format("elements in more than {} others", most_depth));
+                if (open_.size() > max_depth) refuse(fmt::format("elements in more than {} others", max_depth));
                 if (!element_.id.empty()) facts_.elements.push_back(std::move(element_));
                 if (elements_ == 1 && facts_.reference_height > 0 && facts_.has_view_box)
                     refuse("data-reference-height beside viewBox: one of them says how large a unit is");
@@ -265,14 +265,14 @@ class Checker {
         if (name != "data-reference-height") return;
         const auto read = std::from_chars(value.data(), value.data() + value.size(), facts_.reference_height);
         const bool is_number = read.ec == std::errc() && read.ptr == value.data() + value.size();
-        if (!is_number || !(facts_.reference_height >= 1 && facts_.reference_height <= most_reference_height))
+        if (!is_number || !(facts_.reference_height >= 1 && facts_.reference_height <= max_reference_height))
             refuse(fmt::format("data-reference-height=\"{}\": allowed is a number in [1, {}]", printable(value),
-                               most_reference_height));
+                               max_reference_height));
     }
 
     void add_script(std::string name) {
         if (std::ranges::count(facts_.scripts, name) > 0) return;
-        if (facts_.scripts.size() == most_scripts) refuse(fmt::format("more than {} scripts", most_scripts));
+        if (facts_.scripts.size() == max_scripts) refuse(fmt::format("more than {} scripts", max_scripts));
         facts_.scripts.push_back(std::move(name));
     }
 
@@ -301,7 +301,7 @@ class Checker {
 
     std::string_view text_;
     std::vector<Open> open_;
-    std::uint32_t most_elements_;
+    std::uint32_t max_elements_;
     SvgFacts facts_;
     SvgFacts::Element element_;  // that is being read
     std::size_t at_ = 0, start_ = 0;
@@ -317,7 +317,7 @@ bool read_form(std::string_view text, int& digits, int& decimals) {
     const std::string_view whole = text.substr(0, point), part = text.substr(std::min(point + 1, text.size()));
     digits = static_cast<int>(whole.size());
     decimals = static_cast<int>(part.size());
-    return !whole.empty() && whole.size() <= most_zeros && part.size() <= most_zeros &&
+    return !whole.empty() && whole.size() <= max_zeros && part.size() <= max_zeros &&
            part.empty() == (point == text.size()) && whole.find_first_not_of('0') == std::string_view::npos &&
            part.find_first_not_of('0') == std::string_view::npos;
 }
@@ -330,8 +330,8 @@ bool is_name(std::string_view text) {
 
 }  // namespace
 
-Result<> check_svg(std::string_view document, std::uint32_t most_elements, SvgFacts* facts) {
-    Checker checker(document, most_elements);
+Result<> check_svg(std::string_view document, std::uint32_t max_elements, SvgFacts* facts) {
+    Checker checker(document, max_elements);
     Result<> done = checker.run();
     if (done && facts != nullptr) *facts = checker.take_facts();
     return done;

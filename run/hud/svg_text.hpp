@@ -36,7 +36,7 @@ struct SvgFacts {
 /// A document that stands by itself: tags that close each other, no document type (and so no entities), no processing
 /// instructions, UTF-8, and no reference but to its own elements (#name), as it reads once XML's entities and CSS's
 /// escapes are undone. The error is "line: reason".
-[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements, SvgFacts* facts = nullptr);
+[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t max_elements, SvgFacts* facts = nullptr);
 
 /// How many pixels of a picture a unit of the document is: `height` over its reference height, or `scale` where it has
 /// neither one nor a viewBox.

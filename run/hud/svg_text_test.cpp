@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint32_t plenty = 1000;
 
-std::string checked(const std::string& document, std::uint32_t most_elements = plenty) {
-    const auto result = check_svg(document, most_elements);
+std::string checked(const std::string& document, std::uint32_t max_elements = plenty) {
+    const auto result = check_svg(document, max_elements);
     return result ? std::string() : result.error().text;
 }
 

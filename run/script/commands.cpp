@@ -16,15 +16,15 @@ namespace darkroom::script {
 
 namespace {
 
-constexpr std::uint32_t most_lines = 2000, most_shown_refusals = 64, deepest = 8;
-constexpr std::size_t longest_file = std::size_t{1} << 20, most_words = 64, most_kept = 1000;
+constexpr std::uint32_t max_lines = 2000, max_shown_refusals = 64, deepest = 8;
+constexpr std::size_t longest_file = std::size_t{1} << 20, max_words = 64, max_kept = 1000;
 
 using Words = std::span<const std::string_view>;
 
 class Run {
   public:
     Run(Console::State& state, const RunOptions& options)
-        : state_(state), options_(options), left_(options.execute.most_commands) {}
+        : state_(state), options_(options), left_(options.execute.max_commands) {}
 
     void text(std::string_view commands_text, const std::string& place);
     std::uint32_t end();
@@ -62,7 +62,7 @@ class Run {
     }
     /// Puts a line of a configuration file aside whose variable is not there. False: it is none.
     bool keep(std::string_view name, Words values, bool is_archived);
-    [[nodiscard]] bool suggests() const { return options_.execute.suggests && refused_ < most_shown_refusals; }
+    [[nodiscard]] bool suggests() const { return options_.execute.suggests && refused_ < max_shown_refusals; }
     [[nodiscard]] Result<Variable> look_up(std::string_view name) const { return state_.variable(name, suggests()); }
     void print(Severity severity, std::string_view line);
     /// Commands that do the work of many count as many.
@@ -76,10 +76,10 @@ class Run {
 
 constexpr std::array<Run::Known, 12> Run::commands{{
     {"get", "NAME", 1, 1, &Run::get, "Prints a variable; its name alone does, too."},
-    {"set", "NAME VALUE", 2, most_words, &Run::set, "Sets a variable; NAME VALUE does, too."},
-    {"seta", "NAME VALUE", 2, most_words, &Run::seta, "Sets a variable, and archives it from now on."},
+    {"set", "NAME VALUE", 2, max_words, &Run::set, "Sets a variable; NAME VALUE does, too."},
+    {"seta", "NAME VALUE", 2, max_words, &Run::seta, "Sets a variable, and archives it from now on."},
     {"toggle", "NAME [VALUE [OTHER]]", 1, 3, &Run::toggle, "Goes between 0 and 1, or two values."},
-    {"cycle", "NAME [VALUE...]", 1, most_words, &Run::cycle, "Goes to the value behind the present one."},
+    {"cycle", "NAME [VALUE...]", 1, max_words, &Run::cycle, "Goes to the value behind the present one."},
     {"inc", "NAME [AMOUNT]", 1, 2, &Run::inc, "Adds an amount, or 1."},
     {"reset", "NAME", 1, 1, &Run::reset, "Goes back to the default."},
     {"resetall", "", 0, 0, &Run::reset_all, "The same for all variables."},
@@ -90,7 +90,7 @@ constexpr std::array<Run::Known, 12> Run::commands{{
 }};
 
 void Run::print(Severity severity, std::string_view line) {
-    if (lines_++ >= most_lines) return;
+    if (lines_++ >= max_lines) return;
     const LogSink& own = options_.execute.print;
     (own ? own : state_.desc.print)(severity, line);
 }
@@ -106,7 +106,7 @@ void Run::text(std::string_view commands_text, const std::string& place) {
     while (const auto read = reader.next()) {
         if (!spend(1)) return;
         const auto done = command(read->words);
-        if (done || refused_++ >= most_shown_refusals) continue;
+        if (done || refused_++ >= max_shown_refusals) continue;
         print(Severity::Error,
               place.empty() ? done.error().text : fmt::format("{}:{}: {}", place, read->line, done.error().text));
     }
@@ -114,12 +114,12 @@ void Run::text(std::string_view commands_text, const std::string& place) {
 
 std::uint32_t Run::end() {
     lines_ = 0;  // what follows is always shown
-    if (refused_ > most_shown_refusals)
-        print(Severity::Error, fmt::format("and {} more commands that were refused", refused_ - most_shown_refusals));
+    if (refused_ > max_shown_refusals)
+        print(Severity::Error, fmt::format("and {} more commands that were refused", refused_ - max_shown_refusals));
     if (is_over_) {
         ++refused_;
         print(Severity::Error, fmt::format("more commands than are allowed in one go, {}: the others are left out",
-                                           options_.execute.most_commands));
+                                           options_.execute.max_commands));
     }
     return refused_;
 }
@@ -145,7 +145,7 @@ Result<> Run::command(Words words) {
 }
 
 bool Run::keep(std::string_view name, Words values, bool is_archived) {
-    if (options_.kept == nullptr || values.empty() || options_.kept->size() >= most_kept) return false;
+    if (options_.kept == nullptr || values.empty() || options_.kept->size() >= max_kept) return false;
     std::string line = fmt::format("{}\"{}\"", is_archived ? "seta " : "", name);
     for (const std::string_view value : values) line += fmt::format(" \"{}\"", value);
     options_.kept->insert_or_assign(std::string(name), std::move(line));

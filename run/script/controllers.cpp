@@ -18,7 +18,7 @@ namespace {
 
 /// To load a script may take as much as so many frames.
 constexpr std::uint32_t frames_to_load = 20;
-constexpr int most_trace_levels = 10, most_trace_lines = 30;
+constexpr int max_trace_levels = 10, max_trace_lines = 30;
 
 // The functions that Lua calls hold no objects with destructors: see sandbox.hpp.
 // The innermost levels alone; luaL_traceback, which tells the outermost, too, walks a deep stack many times. Lines become
@@ -29,7 +29,7 @@ int trace(lua_State* lua) {
     const int first = lua_gettop(lua);
     lua_pushfstring(lua, "%s\nstack traceback:", text);
     lua_Debug level{};
-    for (int i = 1; i <= most_trace_levels && lua_getstack(lua, i, &level) != 0; ++i) {
+    for (int i = 1; i <= max_trace_levels && lua_getstack(lua, i, &level) != 0; ++i) {
         lua_getinfo(lua, "Sln", &level);
         lua_pushfstring(lua, "\n    %s:", level.short_src);
         if (level.currentline > 0) lua_pushfstring(lua, "%d:", level.currentline);
@@ -77,7 +77,7 @@ std::optional<std::string> Controllers::State::call(int arguments, script::Allow
             const char* const text = status == LUA_ERRRUN ? lua_tostring(lua, -1) : sandbox->why_stopped();
             out.emplace();
             std::string_view rest = text == nullptr ? "not enough memory" : text;
-            for (int line = 0; line < most_trace_lines && !rest.empty(); ++line) {
+            for (int line = 0; line < max_trace_lines && !rest.empty(); ++line) {
                 const std::size_t end = std::min(rest.find('\n'), rest.size());
                 out->append(out->empty() ? "" : "\n").append(printable(rest.substr(0, end)));
                 rest.remove_prefix(std::min(end + 1, rest.size()));

@@ -66,7 +66,7 @@ void Controllers::State::exec(std::string_view commands) noexcept try {
     console->execute(commands, {.allows_files = desc.allows_files,
                                 .suggests = false,
                                 .print = [this](Severity severity, std::string_view line) { remark(severity, line); },
-                                .most_commands = most_commands});
+                                .max_commands = max_commands});
 } catch (...) {
     lose();
 }
@@ -95,7 +95,7 @@ void Controllers::State::lose() const { desc.print(Severity::Error, "scripts: ou
 bool Controllers::State::on_frame(std::string_view slot_name, int function) noexcept try {
     const auto is_same = [&](const Slot& slot) { return slot.name == slot_name; };
     const bool is_new = std::ranges::none_of(slots, is_same) && std::ranges::none_of(pending, is_same);
-    if (is_new && slots.size() + pending.size() >= most_slots) return false;
+    if (is_new && slots.size() + pending.size() >= max_slots) return false;
     Slot slot{.name = std::string(slot_name), .function = function};
     if (loading != nullptr) {
         slot.script = *loading;

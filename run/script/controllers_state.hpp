@@ -47,9 +47,9 @@ struct Controllers::State final : script::Host {
         bool has_reserve = true;  ///< of memory, until it was short of it: one that hoards leaves some to the others
         RateLimit errors{1};
     };
-    static constexpr std::size_t most_slots = 64, longest_text = std::size_t{256} << 10;
-    static constexpr std::uint32_t most_remarks = 20;    // in a second
-    static constexpr std::uint32_t most_commands = 200;  // in one exec
+    static constexpr std::size_t max_slots = 64, longest_text = std::size_t{256} << 10;
+    static constexpr std::uint32_t max_remarks = 20;    // in a second
+    static constexpr std::uint32_t max_commands = 200;  // in one exec
 
     ~State() override;
 
@@ -97,7 +97,7 @@ struct Controllers::State final : script::Host {
     bool is_running = false;
     ControllerFrame frame;
     std::string reply;  ///< what the last answer to a script refers to
-    RateLimit remarks{most_remarks};
+    RateLimit remarks{max_remarks};
     std::uint64_t writes = 0;
     double microseconds = 0;
     std::unique_ptr<script::Sandbox> sandbox;

@@ -16,10 +16,10 @@ namespace {
 using test::ControllersBed;
 
 constexpr double budget_ms = 2;
-constexpr int most_runs = 40;
+constexpr int max_runs = 40;
 
 /// A millisecond; under sanitizers, which are told of by this variable, anything that ends.
-double most_over() { return test::is_small() ? 1000 : 1; }
+double max_over() { return test::is_small() ? 1000 : 1; }
 
 /// Of this thread, by a clock that no controller reads.
 double thread_milliseconds() {
@@ -148,7 +148,7 @@ TEST_P(ControllersHostile, LeaveTheFrameLoopRunning) {
     std::array<double, 40> least;
     least.fill(1e9);
     const auto over = [&] { return *std::ranges::max_element(least) - budget_ms; };
-    for (int run = 0; run < most_runs && over() >= most_over(); ++run) {
+    for (int run = 0; run < max_runs && over() >= max_over(); ++run) {
         ControllersBed bed({.milliseconds_per_frame = budget_ms});
         for (const EffectInfo* const effect : all_effects()) bed.composer.add(*effect, nullptr);
         bed.game = {{"health", 100.0}, {"ammo", 5.0}};
@@ -184,13 +184,13 @@ TEST_P(ControllersHostile, LeaveTheFrameLoopRunning) {
         EXPECT_EQ(bed.now("warp"), 0.5f);
     }
     RecordProperty("milliseconds over", std::to_string(over()));
-    EXPECT_LT(over(), most_over());
+    EXPECT_LT(over(), max_over());
 }
 
 // Objects that are kept for many frames, until there are as many as may be: then to collect them is the most work.
 TEST(ControllersMemory, AFullStateCostsNoMoreThanAFrame) {
-    double least_over = 1e9;
-    for (int run = 0; run < most_runs && least_over >= most_over(); ++run) {
+    double min_over = 1e9;
+    for (int run = 0; run < max_runs && min_over >= max_over(); ++run) {
         ControllersBed bed({.milliseconds_per_frame = budget_ms});
         ASSERT_EQ(bed.load(slot("while true do all[#all + 1] = {{}, {}, {}, {}, {}, {}, {}} end", "all = {}")), "");
         double worst = 0;
@@ -199,10 +199,10 @@ TEST(ControllersMemory, AFullStateCostsNoMoreThanAFrame) {
             worst = std::max(worst, bed.controllers->microseconds() / 1e3);
             ASSERT_LE(bed.controllers->bytes(), std::size_t{16} << 20);
         }
-        least_over = std::min(least_over, worst - budget_ms);
+        min_over = std::min(min_over, worst - budget_ms);
         EXPECT_NE(bed.said.back().find("budget of memory"), std::string::npos) << bed.said.back();
     }
-    EXPECT_LT(least_over, most_over());
+    EXPECT_LT(min_over, max_over());
 }
 
 // At each depth another room is left behind the stack of Lua for the lines that tell of the error, which must not need
@@ -256,7 +256,7 @@ TEST(ControllersBudget, IsSharedByAllThatUseItUp) {
 TEST(ControllersBudget, TheTimeIsSharedByAllThatUseItUp) {
     constexpr double milliseconds = 20;
     double least = 1e9;
-    for (int run = 0; run < most_runs && least > 1.25 * milliseconds; ++run) {
+    for (int run = 0; run < max_runs && least > 1.25 * milliseconds; ++run) {
         ControllersBed bed({.instructions_per_frame = 1'000'000'000, .milliseconds_per_frame = milliseconds});
         ASSERT_EQ(bed.load("for _, name in ipairs({'a', 'b', 'c'}) do\n"
                            "  engine.on_frame(name, function() while true do end end)\nend"),

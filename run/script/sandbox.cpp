@@ -195,7 +195,7 @@ void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size
     }
     if (sandbox.is_bounded_ && size > before) {
         const bool is_large = size > largest_block || (is_string && size > longest_string + 64);
-        if (is_large || sandbox.bytes_ - before + size > most_bytes) {
+        if (is_large || sandbox.bytes_ - before + size > max_bytes) {
             sandbox.stop(is_large ? over_block : over_memory);
             return nullptr;
         }
@@ -205,7 +205,7 @@ void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size
             return nullptr;
         }
         sandbox.left_ -= cost;
-        if (cost > 0) sandbox.most_nodes_ = std::max(sandbox.most_nodes_, size / sandbox.node_bytes_);
+        if (cost > 0) sandbox.max_nodes_ = std::max(sandbox.max_nodes_, size / sandbox.node_bytes_);
     }
     void* const out = std::realloc(block, size);
     if (out == nullptr) return nullptr;
@@ -222,7 +222,7 @@ void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size
     return out;
 }
 
-std::uint64_t Sandbox::cost_of_element() const { return std::max<std::uint64_t>(most_nodes_ / 32, 1); }
+std::uint64_t Sandbox::cost_of_element() const { return std::max<std::uint64_t>(max_nodes_ / 32, 1); }
 
 // A table that is full is filled anew, key by key, into a block of new nodes, before the next instruction. Keys may be
 // chosen so that all collide, and then it takes the square of their number, at some 2 ns each.
@@ -279,7 +279,7 @@ void Sandbox::begin(const Allowance& allowance) {
     why_ = nullptr;
     is_short_ = false;
     // Who fills the state stops short of the reserve. Those that come to a full one may each take a little of it.
-    const std::size_t bytes = most_bytes - 4 * largest_block, blocks = most_blocks;
+    const std::size_t bytes = max_bytes - 4 * largest_block, blocks = max_blocks;
     const bool is_full = bytes_ + reserved_bytes * 3 / 2 > bytes || blocks_ + reserved_blocks * 3 / 2 > blocks;
     const bool takes_reserve = allowance.has_reserve && is_full;
     bytes_limit_ = takes_reserve ? std::min(bytes, bytes_ + reserved_bytes / 4) : bytes - reserved_bytes;
@@ -295,7 +295,7 @@ Allowance Sandbox::end() {
 }
 
 void Sandbox::tidy() {
-    if (bytes_ > most_bytes / 2 || blocks_ > most_blocks / 2) lua_gc(lua_, LUA_GCCOLLECT);
+    if (bytes_ > max_bytes / 2 || blocks_ > max_blocks / 2) lua_gc(lua_, LUA_GCCOLLECT);
 }
 
 int Sandbox::open(lua_State* lua) {

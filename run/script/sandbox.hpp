@@ -23,7 +23,7 @@ struct Allowance {
 
 class Sandbox {
   public:
-    static constexpr std::size_t most_bytes = std::size_t{16} << 20, most_blocks = 16384;
+    static constexpr std::size_t max_bytes = std::size_t{16} << 20, max_blocks = 16384;
     static constexpr std::size_t reserved_bytes = std::size_t{1} << 20, reserved_blocks = 1024;
     static constexpr std::size_t largest_block = std::size_t{256} << 10, longest_string = std::size_t{16} << 10;
 
@@ -69,7 +69,7 @@ class Sandbox {
 
     lua_State* lua_ = nullptr;
     std::size_t node_bytes_ = 0;  ///< of a table's hash part
-    std::size_t most_nodes_ = 0;  ///< of one of a script, so far
+    std::size_t max_nodes_ = 0;   ///< of one of a script, so far
     std::size_t bytes_ = 0, blocks_ = 0, bytes_limit_ = 0, blocks_limit_ = 0;
     std::int64_t left_ = 0;
     double milliseconds_ = 0, cpu_start_ = 0;

@@ -90,7 +90,7 @@ void serve() {
         if (!receive_all(socket_of_program, &request, sizeof request, &memory) || memory.size() != 1) return;
         std::string document(request.document_size, '\0');
         if (!receive_all(socket_of_program, document.data(), document.size())) return;
-        alarm(request.most_seconds);
+        alarm(request.max_seconds);
         const std::string error = draw(document, request, memory[0].number());
         alarm(0);
         const SvgReply reply{.error_size = static_cast<std::uint32_t>(error.size())};

@@ -94,9 +94,9 @@ void FrameBuffers::write_set(const gpu::Context& context, const GpuScene& scene,
                              weights_.info(),   VkDescriptorBufferInfo{scene.morph_deltas.handle, 0, VK_WHOLE_SIZE}};
     constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     std::array<VkDescriptorImageInfo, shadow_images + 3> images{};
-    for (std::uint32_t light = 0; light < most_directional_lights; ++light)
+    for (std::uint32_t light = 0; light < max_directional_lights; ++light)
         images[light] = {shadows.sampler(), shadows.map(light).view, layout};
-    images[most_directional_lights] = {shadows.sampler(), shadows.atlas().view, layout};
+    images[max_directional_lights] = {shadows.sampler(), shadows.atlas().view, layout};
     images[5] = {environment.sampler, environment.prefiltered.view, layout};
     images[6] = {environment.sampler, environment.skybox.view, layout};
     images[7] = {environment.sampler, environment.split_sum.view, layout};

@@ -32,12 +32,12 @@ struct Material {
 };
 }  // namespace blocks
 
-inline constexpr std::uint32_t most_directional_lights = 4, most_point_lights = 16, most_spot_lights = 8;
-inline constexpr std::uint32_t most_cascades = 4;
+inline constexpr std::uint32_t max_directional_lights = 4, max_point_lights = 16, max_spot_lights = 8;
+inline constexpr std::uint32_t max_cascades = 4;
 /// Images of binding 8: the maps of directional lights, then the tiles of lamps.
-inline constexpr std::uint32_t shadow_images = most_directional_lights + 1;
+inline constexpr std::uint32_t shadow_images = max_directional_lights + 1;
 /// In ShadowBlock::world_to_map.
-inline constexpr std::uint32_t first_tile = most_directional_lights * most_cascades;
+inline constexpr std::uint32_t first_tile = max_directional_lights * max_cascades;
 inline constexpr std::uint32_t frame_bindings = 12;
 
 /// Bindings 0 .. 11 of set 0, in order.

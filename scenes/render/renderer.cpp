@@ -56,12 +56,12 @@ Result<> check(const gpu::Context& context, const RenderDesc& desc) {
     if (!std::has_single_bit(desc.samples) || (desc.samples & counts) == 0)
         return user_error(
             fmt::format("samples {}: {} has {}", desc.samples, context.info.name, counts_of(context.traits)));
-    if (desc.positions < 1 || desc.positions > scene::most_samples)
+    if (desc.positions < 1 || desc.positions > scene::max_samples)
         return user_error(
-            fmt::format("positions in a pixel: {}, [1, {}] are allowed", desc.positions, scene::most_samples));
+            fmt::format("positions in a pixel: {}, [1, {}] are allowed", desc.positions, scene::max_samples));
     if (desc.lens.f_stop > 0 && desc.positions == 1)
         return user_error(fmt::format("lens at f/{}: seen from one place; positions in a pixel: [2, {}] are allowed",
-                                      desc.lens.f_stop, scene::most_samples));
+                                      desc.lens.f_stop, scene::max_samples));
     if (desc.has_transparency && (desc.samples != 1 || desc.positions != 1 || desc.output != Output::Hdr))
         return user_error(
             fmt::format("colour before transparency: with {} samples, {} positions and the {} output; allowed is 1, 1 "

@@ -46,7 +46,7 @@ Matrix matrix_of(const mat4& matrix) {
 }
 
 std::vector<const scene::LightState*> directional_lights(const scene::Snapshot& snapshot) {
-    return lights_of(snapshot, LightType::Directional, most_directional_lights);
+    return lights_of(snapshot, LightType::Directional, max_directional_lights);
 }
 
 bool is_caster(const scene::LightState* state) { return state->light.casts_shadow && state->light.intensity > 0; }
@@ -70,8 +70,8 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
     block.planes =
         vec4(camera.near_distance, camera.far_distance, static_cast<float>(snapshot.time), settings.exposure);
     block.light_counts =
-        uvec4(directional_lights(snapshot).size(), lights_of(snapshot, LightType::Point, most_point_lights).size(),
-              lights_of(snapshot, LightType::Spot, most_spot_lights).size(), 0);
+        uvec4(directional_lights(snapshot).size(), lights_of(snapshot, LightType::Point, max_point_lights).size(),
+              lights_of(snapshot, LightType::Spot, max_spot_lights).size(), 0);
     block.modes = uvec4(static_cast<std::uint32_t>(settings.output), settings.is_tone_mapped ? 1 : 0,
                         static_cast<std::uint32_t>(settings.debug), 0);
     block.ambient_sky = vec4(environment.ambient_color.value_or(default_sky) * environment.ambient_intensity, 0);
@@ -130,12 +130,12 @@ blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow
         block.directional_color[i++] = radiance(state->light, 0);
     }
     i = 0;
-    for (const scene::LightState* state : lights_of(snapshot, LightType::Point, most_point_lights)) {
+    for (const scene::LightState* state : lights_of(snapshot, LightType::Point, max_point_lights)) {
         block.point_position[i] = vec4(state->position, state->light.range);
         block.point_color[i++] = radiance(state->light, tiles_of_light(state).x);
     }
     i = 0;
-    for (const scene::LightState* state : lights_of(snapshot, LightType::Spot, most_spot_lights)) {
+    for (const scene::LightState* state : lights_of(snapshot, LightType::Spot, max_spot_lights)) {
         block.spot_position[i] = vec4(state->position, state->light.range);
         block.spot_direction[i] = vec4(state->direction, std::cos(state->light.outer_angle));
         block.spot_tiles[i] = tiles_of_light(state);

@@ -22,7 +22,7 @@ void Budget::add_unpacked(std::uint64_t packed_bytes, std::uint64_t unpacked_byt
     const std::uint64_t packed = std::min(packed_bytes, file_bytes_ - worth_ - packed_);
     packed_ += packed;
     if (unpacked_bytes <= packed) return;
-    const std::uint64_t worth = std::min(unpacked_bytes, packed * most_unpacked_per_byte) - packed;
+    const std::uint64_t worth = std::min(unpacked_bytes, packed * max_unpacked_per_byte) - packed;
     worth_ += worth;
     add_file(worth);
 }

@@ -19,7 +19,7 @@ class Budget {
     static constexpr std::uint64_t free_work = std::uint64_t{1} << 29, work_per_file_byte = 64;
 
     /// Draco and meshoptimizer make 5 to 10 of a byte of a real mesh.
-    static constexpr std::uint64_t most_unpacked_per_byte = 12;
+    static constexpr std::uint64_t max_unpacked_per_byte = 12;
 
     /// `sharers`: so many inputs divide what is free among them.
     explicit Budget(std::uint64_t file_bytes = 0, std::uint64_t sharers = 1);

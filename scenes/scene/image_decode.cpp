@@ -15,7 +15,7 @@ namespace darkroom::scene {
 namespace {
 
 // GPUs take no larger textures.
-constexpr std::uint32_t most_texture_side = 16384;
+constexpr std::uint32_t max_texture_side = 16384;
 
 // What a batch may become, in pixels of four bytes: a few bytes of a damaged file must not ask for gigabytes.
 constexpr std::size_t free_pixels = std::size_t{1} << 27;
@@ -34,9 +34,9 @@ class OpenedImage {
         if (!opened) return failure(std::move(opened));
         const FilePart& part = opened->source->parts().front();
         if (part.channels.empty()) return user_error("is not a flat picture");
-        if (part.width > most_texture_side || part.height > most_texture_side)
+        if (part.width > max_texture_side || part.height > max_texture_side)
             return user_error(fmt::format("the picture is {}x{}, [1, {}] a side is allowed", part.width, part.height,
-                                          most_texture_side));
+                                          max_texture_side));
         return OpenedImage(std::move(opened->source), bytes.size());
     }
 

@@ -158,7 +158,7 @@ struct Entity {
     std::string place;  ///< "file:line:column" where a file first names it, for messages
 };
 
-inline constexpr std::uint32_t most_samples = 1024;  ///< of Scene::samples
+inline constexpr std::uint32_t max_samples = 1024;  ///< of Scene::samples
 
 /// What moves the joints of a skin. JointsOnly: joints are the only parents, and what hangs above them in the model
 /// counts for nothing, as some engines import figures.

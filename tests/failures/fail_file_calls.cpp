@@ -33,8 +33,8 @@ constexpr Kind opening{'o', {EACCES, EMFILE, EIO, ENOSPC}}, reading{'r', {EIO, E
     writing{'w', {ENOSPC, EIO, EINTR, a_part}}, renaming{'n', {EACCES, ENOSPC, EIO}}, reaching{'s', {EIO, ENOSPC}},
     closing{'c', {EIO, ENOSPC}}, mapping{'m', {ENOMEM}}, resizing{'t', {ENOSPC, EIO}}, linking{'l', {EACCES, ENOSPC}};
 
-constexpr int most_files = 4096;
-std::array<std::atomic<bool>, most_files> is_ours{};
+constexpr int max_files = 4096;
+std::array<std::atomic<bool>, max_files> is_ours{};
 std::atomic<long> calls{0};
 
 const char* variable(const char* name) {
@@ -48,7 +48,7 @@ bool lies_in_folder(const char* path) {
     return is_program && !folder.empty() && std::string_view(path).starts_with(folder);
 }
 
-bool is_known(int file) { return file >= 0 && file < most_files && is_ours[static_cast<std::size_t>(file)]; }
+bool is_known(int file) { return file >= 0 && file < max_files && is_ours[static_cast<std::size_t>(file)]; }
 
 void log(char letter) {
     static const char* const path = variable("DARKROOM_FAIL_LOG");
@@ -85,7 +85,7 @@ int open_counted(const char* name, const char* path, int flags, mode_t mode) {
     if (is_counted)
         if (const int error = take_failure(opening)) return fail<int>(error);
     const int file = real<int (*)(const char*, int, ...)>(name)(path, flags, mode);
-    if (file >= 0 && file < most_files) is_ours[static_cast<std::size_t>(file)] = is_counted;
+    if (file >= 0 && file < max_files) is_ours[static_cast<std::size_t>(file)] = is_counted;
     return file;
 }
 
@@ -158,7 +158,7 @@ int ftruncate(int file, off_t size) {
 /// Closed all the same, as on Linux.
 int close(int file) {
     const int error = simple(is_known(file), closing);
-    if (file >= 0 && file < most_files) is_ours[static_cast<std::size_t>(file)] = false;
+    if (file >= 0 && file < max_files) is_ours[static_cast<std::size_t>(file)] = false;
     const int done = real<int (*)(int)>("close")(file);
     return error != 0 ? fail<int>(error) : done;
 }

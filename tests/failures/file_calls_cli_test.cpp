@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// How many errors a call may have at most (fail_file_calls.cpp).
-constexpr std::size_t most_errors = 4;
+constexpr std::size_t max_errors = 4;
 
 struct Command {
     const char* name;
@@ -132,7 +132,7 @@ class FileCalls : public test::CliFixture {
             EXPECT_GT(calls.size(), 5U);
             std::vector<std::pair<std::size_t, std::size_t>> points;
             for (std::size_t number = 0; number < calls.size(); ++number)
-                for (std::size_t error = 0; error < most_errors; ++error) points.emplace_back(number, error);
+                for (std::size_t error = 0; error < max_errors; ++error) points.emplace_back(number, error);
             std::ranges::shuffle(points, random);
             points.resize(std::min(points.size(), most));
             for (const auto& [number, error] : points) {

@@ -22,7 +22,7 @@ namespace failing = gpu::test::failing;
 /// A picture is compared, and all is counted, after so many frames.
 constexpr std::uint64_t frames_between = 2000;
 /// Five bytes a frame, left behind in each, are more.
-constexpr std::int64_t most_growth = 64 << 10;
+constexpr std::int64_t max_growth = 64 << 10;
 
 constexpr std::array look_texts{
     "[post_process]\nexposure = 1.2\nbloom_enabled = true\nbloom_intensity = 0.2\nvignette_intensity = 0.4\n",
@@ -172,7 +172,7 @@ class SoakHost : public test::StackTest {
             EXPECT_EQ(now.device_bytes, before->device_bytes);
             // The layer gives back outside of calls what it got in them.
             if (!is_validated) {
-                EXPECT_LE(now.own_bytes - before->own_bytes, most_growth);
+                EXPECT_LE(now.own_bytes - before->own_bytes, max_growth);
             }
         }
         EXPECT_EQ(host.messages(), 0U);

@@ -51,7 +51,7 @@ class CliFailedPresenting : public ViewerFixture {
         int shown = 0, turns = 0;
         // The presenter makes a swapchain for each size, whatever the window's is.
         for (const VkExtent2D size : {VkExtent2D{96, 64}, VkExtent2D{97, 64}, VkExtent2D{96, 64}})
-            for (const int wanted = shown + frames_of_a_size; shown < wanted && turns < most_turns; ++turns) {
+            for (const int wanted = shown + frames_of_a_size; shown < wanted && turns < max_turns; ++turns) {
                 window_->poll();
                 const auto begun = presenter->begin(size);
                 if (!begun) attempt.expect_told("beginning", begun.error());
@@ -68,7 +68,7 @@ class CliFailedPresenting : public ViewerFixture {
     [[nodiscard]] Device& plain() { return *plain_; }
 
   private:
-    static constexpr int frames_of_a_size = 4, most_turns = 60;
+    static constexpr int frames_of_a_size = 4, max_turns = 60;
 
     std::optional<window::Window> window_;
     std::optional<Device> plain_;

@@ -22,7 +22,7 @@ struct Driver {
 };
 Driver driver;
 std::deque<VkResult> to_acquire, to_present;  ///< what is answered next, once each
-int swapchains = 0, most_swapchains = 0;      ///< there now, at once
+int swapchains = 0, max_swapchains = 0;       ///< there now, at once
 
 VkResult acquire(VkDevice device, VkSwapchainKHR swapchain, std::uint64_t timeout, VkSemaphore semaphore, VkFence fence,
                  std::uint32_t* image) {
@@ -44,7 +44,7 @@ VkResult present(VkQueue queue, const VkPresentInfoKHR* info) {
 VkResult create(VkDevice device, const VkSwapchainCreateInfoKHR* info, const VkAllocationCallbacks* allocator,
                 VkSwapchainKHR* out) {
     const VkResult result = driver.create(device, info, allocator, out);
-    if (result == VK_SUCCESS) most_swapchains = std::max(most_swapchains, ++swapchains);
+    if (result == VK_SUCCESS) max_swapchains = std::max(max_swapchains, ++swapchains);
     return result;
 }
 
@@ -74,7 +74,7 @@ class CliPresenter : public ViewerFixture {
         if (IsSkipped() || HasFatalFailure()) return;
         to_acquire.clear();
         to_present.clear();
-        swapchains = most_swapchains = 0;
+        swapchains = max_swapchains = 0;
         Result<window::Window> opened = window::Window::create({.title = "a test", .size = {96, 64}});
         ASSERT_TRUE(opened) << opened.error().text;
         window_.emplace(std::move(*opened));
@@ -172,11 +172,11 @@ TEST_F(CliPresenter, TriesAgainToMakeALostSurface) {
 TEST_F(CliPresenter, KeepsFewWhereNothingCanBeShownForLong) {
     to_acquire.assign(300, VK_ERROR_OUT_OF_DATE_KHR);
     for (int i = 0; i < 300; ++i) EXPECT_FALSE(turn());
-    EXPECT_LT(most_swapchains, 12);
+    EXPECT_LT(max_swapchains, 12);
     show(8);
     to_present.assign(300, VK_ERROR_OUT_OF_DATE_KHR);
     show(300);
-    EXPECT_LT(most_swapchains, 12);
+    EXPECT_LT(max_swapchains, 12);
     show(8);
     EXPECT_EQ(swapchains, 1);
 }

@@ -23,10 +23,10 @@ constexpr std::uint64_t warm_up_rounds = 250, all_rounds = 300;
 constexpr std::uint64_t validated_frames = 2'000;
 /// How much more the viewer's own code may hold at the end than after the warm-up, in bytes: what is shown is the same
 /// at both. One byte a frame, left behind in each, is more, and so are 400 a round.
-constexpr std::int64_t most_own_growth = 16 << 10;
+constexpr std::int64_t max_own_growth = 16 << 10;
 /// The same of drivers and libraries. A round leaves more behind if it forgets a single image of 160 by 90 (115 KiB,
 /// and some 15 at each of the other sizes).
-constexpr std::int64_t most_other_growth = 2 << 20;
+constexpr std::int64_t max_other_growth = 2 << 20;
 
 constexpr std::string_view scene_text = R"(format = 1
 [scene]
@@ -86,7 +86,7 @@ class SoakViewer : public ViewerFixture {
     }
     /// Every toggle is a step of undo: as many as are kept, so that those to come replace others.
     void fill_undo() {
-        constexpr std::size_t steps = edit::LookDocument::most_steps;
+        constexpr std::size_t steps = edit::LookDocument::max_steps;
         ASSERT_EQ(shell(fmt::format("xdotool key --delay 10 --repeat {} F9", steps)), 0);
         EXPECT_TRUE(wait_until([&] { return count("F9 dither") == steps; }, 60)) << count("F9 dither");
     }
@@ -179,8 +179,8 @@ TEST_F(SoakViewer, LeavesNothingBehindInManyFrames) {
     RecordProperty("other_growth_bytes", fmt::format("{}", last[1] - first[1]));
     RecordProperty("resident_growth_kib", fmt::format("{}", resident() - first_resident));
     EXPECT_GT(first[0], 0) << "nothing is counted";
-    EXPECT_LE(last[0] - first[0], most_own_growth) << "from " << first[0];
-    EXPECT_LE(last[1] - first[1], most_other_growth) << "from " << first[1];
+    EXPECT_LE(last[0] - first[0], max_own_growth) << "from " << first[0];
+    EXPECT_LE(last[1] - first[1], max_other_growth) << "from " << first[1];
     leave_in_silence();
 }
 

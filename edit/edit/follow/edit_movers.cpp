@@ -52,7 +52,7 @@ Result<> check_room(std::string_view what, std::size_t count, std::size_t most) 
 
 Result<> check_new_layer(const Look& look, std::string_view name) {
     if (Result<> done = check_name("name", name); !done) return done;
-    if (Result<> done = check_room("layer", look.layers.size(), most_layers); !done) return done;
+    if (Result<> done = check_room("layer", look.layers.size(), max_layers); !done) return done;
     if (std::ranges::count(look.layers, name, &LookLayer::name) == 0) return {};
     return user_error(fmt::format("two layers are named '{}'", name));
 }
@@ -83,7 +83,7 @@ std::vector<Movable> movable_values(const Look& look, bool is_layer) {
 
 Result<std::size_t> add_pulse(Look& look, std::string_view event, std::string_view entry, std::string_view parameter) {
     if (Result<> done = check_name("event", event); !done) return failure(std::move(done));
-    if (Result<> done = check_room("pulse", look.pulses.size(), most_pulses); !done) return failure(std::move(done));
+    if (Result<> done = check_room("pulse", look.pulses.size(), max_pulses); !done) return failure(std::move(done));
     const Result<Target> target = movable_at(look, entry, parameter, false);
     if (!target) return failure(target.error());
     if (target->row->is_amount) wake(*target->entry);

@@ -70,7 +70,7 @@ ParamInfo amount_row(const Look& look, const LookPulse& pulse) {
     constexpr std::array kinds{Kind::Float, Kind::Vec2, Kind::Vec3, Kind::Vec4};
     const ParamInfo* const of = moved(look, pulse.entry, pulse.parameter).row;
     const std::uint32_t count = of == nullptr ? 1 : std::clamp(of->words, 1U, 4U);
-    const double width = of == nullptr ? 1 : std::min(of->range.max - of->range.min, most_amount);
+    const double width = of == nullptr ? 1 : std::min(of->range.max - of->range.min, max_amount);
     return {.name = "amount",
             .doc = "What is added while the envelope is 1.",
             .unit = of == nullptr ? Unit{} : of->unit,

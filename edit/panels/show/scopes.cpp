@@ -73,7 +73,7 @@ int shade(std::uint32_t count, std::uint32_t most) {
 }
 
 /// More in one list are too much for indices of 16 bits, which hosts may have.
-constexpr std::size_t most_runs = 12'000;
+constexpr std::size_t max_runs = 12'000;
 
 using Shades = std::array<int, 3>;
 
@@ -102,7 +102,7 @@ auto shades_of(const Waveform& waveform, WaveformKind kind, std::size_t part, st
     };
 }
 
-/// Levels to a cell: as few as most_runs allows. Noise has more runs than a picture.
+/// Levels to a cell: as few as max_runs allows. Noise has more runs than a picture.
 std::size_t cell_height(const Waveform& waveform, WaveformKind kind, std::size_t parts) {
     for (std::size_t step = 1;; step *= 2) {
         std::size_t runs = 0;
@@ -110,7 +110,7 @@ std::size_t cell_height(const Waveform& waveform, WaveformKind kind, std::size_t
             for (std::size_t column = 0; column < Waveform::columns; ++column)
                 for_each_run(shades_of(waveform, kind, part, column), step,
                              [&](const Shades&, std::size_t, std::size_t) { ++runs; });
-        if (runs <= most_runs) return step;
+        if (runs <= max_runs) return step;
     }
 }
 

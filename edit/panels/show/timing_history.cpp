@@ -27,14 +27,14 @@ void TimingHistory::add(const RecordingTimes& times, double record_microseconds)
     for (const PassTime& pass : times.passes) {
         const float milliseconds = number(pass.milliseconds);
         frame.milliseconds += milliseconds;
-        if (frame.passes.size() < most_passes)
+        if (frame.passes.size() < max_passes)
             frame.passes.push_back({.name = index_of(pass.name), .milliseconds = milliseconds});
         else
             frame.passes.back().milliseconds += milliseconds;
     }
     frames_.push_back(std::move(frame));
-    if (frames_.size() > most_frames) frames_.pop_front();
-    if (names_.size() > 2 * most_passes) drop_unused_names();
+    if (frames_.size() > max_frames) frames_.pop_front();
+    if (names_.size() > 2 * max_passes) drop_unused_names();
 }
 
 std::uint32_t TimingHistory::index_of(std::string_view name) {
@@ -64,7 +64,7 @@ TimingHistory::Statistics TimingHistory::of_frames() const {
     return statistics(std::move(values));
 }
 
-float TimingHistory::most_shown() const {
+float TimingHistory::max_shown() const {
     std::vector<float> values;
     for (const Frame& frame : frames_) values.push_back(frame.milliseconds);
     if (values.empty()) return 0;

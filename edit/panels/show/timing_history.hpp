@@ -13,8 +13,8 @@ namespace darkroom::panels {
 
 class TimingHistory {
   public:
-    static constexpr std::size_t most_frames = 240;
-    static constexpr std::size_t most_passes = 256;  ///< of a frame; what is beyond is added to the last
+    static constexpr std::size_t max_frames = 240;
+    static constexpr std::size_t max_passes = 256;  ///< of a frame; what is beyond is added to the last
 
     struct Pass {
         std::uint32_t name = 0;  ///< index for name()
@@ -46,7 +46,7 @@ class TimingHistory {
     [[nodiscard]] Statistics of_pass(std::uint32_t name) const;
     /// What a plot of the frames should reach up to, in milliseconds: nine of ten frames lie below two thirds of it,
     /// and a few that took far longer (a driver that compiled) are cut off.
-    [[nodiscard]] float most_shown() const;
+    [[nodiscard]] float max_shown() const;
 
   private:
     std::uint32_t index_of(std::string_view name);

@@ -14,7 +14,7 @@ TEST(PanelTimingHistory, KeepsTheLastFramesInOrder) {
     TimingHistory history;
     for (std::uint64_t frame = 0; frame < 1000; ++frame)
         add(history, frame, {{"bloom", static_cast<double>(frame)}, {"tail", 1}}, static_cast<double>(frame));
-    ASSERT_EQ(history.frames().size(), TimingHistory::most_frames);
+    ASSERT_EQ(history.frames().size(), TimingHistory::max_frames);
     EXPECT_EQ(history.frames().front().frame_index, 760U);
     EXPECT_EQ(history.frames().back().frame_index, 999U);
     EXPECT_EQ(history.frames().back().milliseconds, 1000);
@@ -36,7 +36,7 @@ TEST(PanelTimingHistory, TakesARecordingOnce) {
 TEST(PanelTimingHistory, MediansAndWorstAreThoseOfTheFramesKept) {
     TimingHistory history;
     add(history, 0, {{"a", 100}}, 3);
-    for (std::uint64_t frame = 1; frame <= TimingHistory::most_frames; ++frame)
+    for (std::uint64_t frame = 1; frame <= TimingHistory::max_frames; ++frame)
         add(history, frame,
             {{"a", static_cast<double>(frame % 3 + 1)}, {frame % 2 == 0 ? "b" : "c", static_cast<double>(frame % 4)}},
             10);
@@ -60,13 +60,13 @@ TEST(PanelTimingHistory, NumbersThatAreNoneCountAsNothing) {
 
 TEST(PanelTimingHistory, AFewSlowFramesScaleNothing) {
     TimingHistory history;
-    EXPECT_EQ(history.most_shown(), 0);
+    EXPECT_EQ(history.max_shown(), 0);
     for (std::uint64_t frame = 0; frame < 100; ++frame) add(history, frame, {{"a", 2}});
-    EXPECT_NEAR(history.most_shown(), 2.1, 1e-6);
+    EXPECT_NEAR(history.max_shown(), 2.1, 1e-6);
     for (std::uint64_t frame = 100; frame < 105; ++frame) add(history, frame, {{"a", 400}});
-    EXPECT_NEAR(history.most_shown(), 3, 1e-6);
+    EXPECT_NEAR(history.max_shown(), 3, 1e-6);
     for (std::uint64_t frame = 200; frame < 240; ++frame) add(history, frame, {{"a", 400}});
-    EXPECT_NEAR(history.most_shown(), 420, 1e-3) << "many are no spike";
+    EXPECT_NEAR(history.max_shown(), 420, 1e-3) << "many are no spike";
 }
 
 TEST(PanelTimingHistory, StaysSmallWhateverPassesAreCalled) {
@@ -75,13 +75,13 @@ TEST(PanelTimingHistory, StaysSmallWhateverPassesAreCalled) {
     for (std::uint64_t frame = 0; frame < 2000; ++frame) {
         names = {fmt::format("pass {}", frame), fmt::format("other {}", frame)};
         add(history, frame, {{names[0], 1}, {names[1], 2}});
-        ASSERT_LE(history.name_count(), std::max(2 * TimingHistory::most_passes, 2 * TimingHistory::most_frames + 2));
+        ASSERT_LE(history.name_count(), std::max(2 * TimingHistory::max_passes, 2 * TimingHistory::max_frames + 2));
         const TimingHistory::Frame& first = history.frames().front();
         ASSERT_EQ(history.name(first.passes[1].name), fmt::format("other {}", first.frame_index));
     }
     const std::vector<PassTime> many(1000, {"a", 1});
     add(history, 5000, many);
-    EXPECT_EQ(history.frames().back().passes.size(), TimingHistory::most_passes);
+    EXPECT_EQ(history.frames().back().passes.size(), TimingHistory::max_passes);
     EXPECT_EQ(history.frames().back().milliseconds, 1000);
 }
 

@@ -86,14 +86,14 @@ void TimingsPanel::draw_bar(const TimingHistory& history) {
 
 void TimingsPanel::draw_column(const Plot& plot, const TimingHistory::Frame& frame, float number, float most) const {
     // More rectangles in one list are too many for indices of 16 bits, which hosts may have.
-    constexpr std::size_t most_parts = 50;
-    const float least = frame.passes.size() > most_parts ? 1.0f / most_parts : 1 / (plot.max.y - plot.min.y);
+    constexpr std::size_t max_parts = 50;
+    const float least = frame.passes.size() > max_parts ? 1.0f / max_parts : 1 / (plot.max.y - plot.min.y);
     float drawn = 0, sum = 0;
     for (const TimingHistory::Pass& pass : frame.passes) {
         sum += pass.milliseconds / most;
         // What is too thin to be seen goes to the next one.
         if (sum - drawn < least && &pass != &frame.passes.back()) continue;
-        plot.fill(number / TimingHistory::most_frames, drawn, (number + 1) / TimingHistory::most_frames, sum,
+        plot.fill(number / TimingHistory::max_frames, drawn, (number + 1) / TimingHistory::max_frames, sum,
                   color_of(pass.name));
         drawn = sum;
     }
@@ -101,17 +101,17 @@ void TimingsPanel::draw_column(const Plot& plot, const TimingHistory::Frame& fra
 
 void TimingsPanel::draw_history(const TimingHistory& history, float height) {
     const Plot plot = begin_plot("history", {ImGui::GetContentRegionAvail().x, height});
-    const float most = std::max(history.most_shown(), 1e-3f);
+    const float most = std::max(history.max_shown(), 1e-3f);
     // The newest at the right.
-    std::size_t column = TimingHistory::most_frames - history.frames().size();
-    const auto column_under_mouse = static_cast<std::size_t>(std::max(plot.mouse.x, 0.0f) * TimingHistory::most_frames);
+    std::size_t column = TimingHistory::max_frames - history.frames().size();
+    const auto column_under_mouse = static_cast<std::size_t>(std::max(plot.mouse.x, 0.0f) * TimingHistory::max_frames);
     const TimingHistory::Frame* under_mouse = nullptr;
     for (const TimingHistory::Frame& frame : history.frames()) {
         draw_column(plot, frame, static_cast<float>(column), most);
         if (frame.milliseconds > most) {
-            const float left = static_cast<float>(column) / TimingHistory::most_frames;
+            const float left = static_cast<float>(column) / TimingHistory::max_frames;
             const float top = 3 / (plot.max.y - plot.min.y);
-            plot.fill(left, 1 - top, left + 1.0f / TimingHistory::most_frames, 1, ImGui::GetColorU32(accent_color));
+            plot.fill(left, 1 - top, left + 1.0f / TimingHistory::max_frames, 1, ImGui::GetColorU32(accent_color));
         }
         if (plot.is_hovered && column == column_under_mouse) under_mouse = &frame;
         ++column;

@@ -105,8 +105,8 @@ TEST_F(PanelTimings, ShowsAHistoryAndATable) {
 }
 
 TEST_F(PanelTimings, ManyPassesAreNotTooMuchForSmallIndices) {
-    const std::vector<PassTime> passes(TimingHistory::most_passes, {"pass", 0.1});
-    for (std::uint64_t frame = 0; frame < TimingHistory::most_frames; ++frame) add_frame(history, frame, passes, 1);
+    const std::vector<PassTime> passes(TimingHistory::max_passes, {"pass", 0.1});
+    for (std::uint64_t frame = 0; frame < TimingHistory::max_frames; ++frame) add_frame(history, frame, passes, 1);
     gui.frame(2);
     EXPECT_LT(ImGui::GetDrawData()->CmdLists[0]->VtxBuffer.Size, 60'000);
 }

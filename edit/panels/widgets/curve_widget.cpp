@@ -20,17 +20,16 @@ namespace {
 /// The visible part of the plane, and where it lies.
 struct View {
     ImVec2 corner, size;  ///< in pixels
-    float least_x, most_x, least_y, most_y;
+    float min_x, max_x, min_y, max_y;
 
     [[nodiscard]] ImVec2 place(float x, float y) const {
-        return {corner.x + (x - least_x) / (most_x - least_x) * size.x,
-                corner.y + (most_y - y) / (most_y - least_y) * size.y};
+        return {corner.x + (x - min_x) / (max_x - min_x) * size.x, corner.y + (max_y - y) / (max_y - min_y) * size.y};
     }
     [[nodiscard]] float x_of(float pixel) const {
-        return static_cast<float>(four_digits(least_x + (pixel - corner.x) / size.x * (most_x - least_x)));
+        return static_cast<float>(four_digits(min_x + (pixel - corner.x) / size.x * (max_x - min_x)));
     }
     [[nodiscard]] float y_of(float pixel) const {
-        return static_cast<float>(four_digits(most_y - (pixel - corner.y) / size.y * (most_y - least_y)));
+        return static_cast<float>(four_digits(max_y - (pixel - corner.y) / size.y * (max_y - min_y)));
     }
 };
 
@@ -95,18 +94,17 @@ void paint_line(const Curve& curve, const View& view, ImU32 color, bool has_iden
     const float thickness = 1.5f * ImGui::GetFontSize() / 15;
     if (curve.count == 0) {
         if (has_identity)
-            list.AddLine(view.place(view.least_x, view.least_x), view.place(view.most_x, view.most_x), color,
-                         thickness);
+            list.AddLine(view.place(view.min_x, view.min_x), view.place(view.max_x, view.max_x), color, thickness);
         return;
     }
     std::array<ImVec2, Curve::capacity + 2> places;
     for (std::uint32_t i = 0; i < curve.count; ++i) places[i + 1] = view.place(curve.x[i], curve.y[i]);
     const std::uint32_t last = curve.count - 1;
-    const float least_x = std::min(view.least_x, curve.x[0]), most_x = std::max(view.most_x, curve.x[last]);
+    const float min_x = std::min(view.min_x, curve.x[0]), max_x = std::max(view.max_x, curve.x[last]);
     // Constant outside, or as far from the identity as the last point is.
-    const float before = has_identity ? least_x - curve.x[0] : 0, behind = has_identity ? most_x - curve.x[last] : 0;
-    places[0] = view.place(least_x, curve.y[0] + before);
-    places[curve.count + 1] = view.place(most_x, curve.y[last] + behind);
+    const float before = has_identity ? min_x - curve.x[0] : 0, behind = has_identity ? max_x - curve.x[last] : 0;
+    places[0] = view.place(min_x, curve.y[0] + before);
+    places[curve.count + 1] = view.place(max_x, curve.y[last] + behind);
     list.AddPolyline(places.data(), static_cast<int>(curve.count) + 2, color, 0, thickness);
 }
 
@@ -137,7 +135,7 @@ void paint(const Curve& curve, const View& view, int chosen, const CurveShown& s
     list.PopClipRect();
     const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
     const float pad = ImGui::GetStyle().FramePadding.y;
-    const std::string top = fmt::format("{:.3g}", view.most_y), bottom = fmt::format("{:.3g}", view.least_y);
+    const std::string top = fmt::format("{:.3g}", view.max_y), bottom = fmt::format("{:.3g}", view.min_y);
     list.AddText({view.corner.x + pad, view.corner.y + pad}, dim, top.c_str());
     list.AddText({view.corner.x + pad, end.y - pad - ImGui::GetFontSize()}, dim, bottom.c_str());
     if (curve.count > 0) return;

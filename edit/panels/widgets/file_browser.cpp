@@ -53,7 +53,7 @@ void FileBrowser::enter(const std::filesystem::path& folder) {
     for (; !error && file != std::filesystem::directory_iterator(); file.increment(error)) {
         const std::string name = file->path().filename().string();
         if (name.starts_with('.')) continue;
-        if (entries_.size() == most_entries) {
+        if (entries_.size() == max_entries) {
             is_cut_short_ = true;
             break;
         }
@@ -183,7 +183,7 @@ void FileBrowser::draw_list(float height) {
 void FileBrowser::draw_foot() {
     const std::string note = !problem_.empty() ? problem_
                              : is_replacing_   ? fmt::format("{} is there already", printable(name_))
-                             : is_cut_short_   ? fmt::format("The first {} files", most_entries)
+                             : is_cut_short_   ? fmt::format("The first {} files", max_entries)
                                                : std::string();
     ImGui::AlignTextToFramePadding();
     if (!note.empty())

@@ -20,7 +20,7 @@ struct FileRequest {
 
 class FileBrowser {
   public:
-    static constexpr std::size_t most_entries = 20000;  ///< of a folder; more are not shown
+    static constexpr std::size_t max_entries = 20000;  ///< of a folder; more are not shown
 
     /// In the place of a request that is open.
     void open(FileRequest request);

@@ -79,11 +79,11 @@ void Messages::say(std::string_view source, std::span<const Said> all) {
     auto present = static_cast<std::size_t>(
         std::ranges::count_if(entries_, [](const Entry& entry) { return !entry.sources.empty(); }));
     for (Entry& entry : entries_)
-        if (present > most_present && !entry.sources.empty()) {
+        if (present > max_present && !entry.sources.empty()) {
             entry.sources.clear();
             --present;
         }
-    while (entries_.size() > most_kept) entries_.pop_front();
+    while (entries_.size() > max_kept) entries_.pop_front();
 }
 
 void Messages::report(std::string_view source, const Error& error) {
@@ -107,7 +107,7 @@ void Messages::note(std::string_view text) {
         return;
     }
     entries_.push_back({.severity = Severity::Info, .text = line});
-    while (entries_.size() > most_kept) entries_.pop_front();
+    while (entries_.size() > max_kept) entries_.pop_front();
 }
 
 bool Messages::is_empty() const { return std::ranges::none_of(entries_, is_shown); }

@@ -27,7 +27,7 @@ struct TextPlace {
 
 class Messages {
   public:
-    static constexpr std::size_t most_present = 16, most_kept = 200;
+    static constexpr std::size_t max_present = 16, max_kept = 200;
 
     struct Said {
         Severity severity = Severity::Error;

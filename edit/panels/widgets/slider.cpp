@@ -76,7 +76,7 @@ void paint(const SliderScale& scale, const ParamInfo& row, double usual, double 
 /// The field in the slider's place, until Enter, or a click elsewhere.
 SliderEdit type_number(const ParamInfo& row, double& number, int& typing) {
     // Frames in which the field may wait for the keyboard: it has gone, and come back with its panel, after more.
-    constexpr int most_waiting = 4;
+    constexpr int max_waiting = 4;
     const bool is_new = typing == 0;
     static std::string typed;  // only one item of ImGui's is typed into at a time
     if (is_new) {
@@ -88,7 +88,7 @@ SliderEdit type_number(const ParamInfo& row, double& number, int& typing) {
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
     typing = ImGui::IsItemActive() ? 1 : typing + 1;
     if (!is_entered && !ImGui::IsItemDeactivated()) {
-        if (typing > most_waiting) typing = 0;
+        if (typing > max_waiting) typing = 0;
         return {};
     }
     typing = 0;

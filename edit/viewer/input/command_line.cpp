@@ -35,7 +35,7 @@ std::optional<std::string> CommandLine::draw(const Names& names, const Print& pr
     recalled_ = 0;
     std::erase(kept_, typed_);
     kept_.push_back(typed_);
-    if (kept_.size() > most_kept) kept_.pop_front();
+    if (kept_.size() > max_kept) kept_.pop_front();
     return std::exchange(typed_, {});
 }
 

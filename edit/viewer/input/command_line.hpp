@@ -19,7 +19,7 @@ namespace app {
 
 class CommandLine {
   public:
-    static constexpr std::size_t longest = 512, most_kept = 200;
+    static constexpr std::size_t longest = 512, max_kept = 200;
 
     /// All words that begin so, in alphabetical order.
     using Names = std::function<std::vector<std::string>(std::string_view begin)>;

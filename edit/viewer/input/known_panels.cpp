@@ -72,7 +72,7 @@ Result<KnownPanels> KnownPanels::read(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) return out;
     const std::string shown = darkroom::printable(file.string());
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = darkroom::most_toml_bytes});
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = darkroom::max_toml_bytes});
     if (!bytes) return failure(bytes.error());
     const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const Result<toml::table> tables = darkroom::parse_toml(text, shown);

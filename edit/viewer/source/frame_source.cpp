@@ -84,8 +84,8 @@ void FrameSource::work() {
             kept_.splice(kept_.begin(), kept_, shown);
         const auto is_known = [&](std::size_t number) { return find(number) != nullptr || failed_.contains(number); };
         std::size_t number = wanted_, ahead = 0;
-        while (ahead <= most_ahead && is_known(number)) number = (wanted_ + ++ahead) % files_.size();
-        if (ahead > most_ahead) {
+        while (ahead <= max_ahead && is_known(number)) number = (wanted_ + ++ahead) % files_.size();
+        if (ahead > max_ahead) {
             changed_.wait(lock);
             continue;
         }
@@ -100,7 +100,7 @@ void FrameSource::work() {
 void FrameSource::keep(std::size_t number, Result<std::shared_ptr<Decoded>> made) {
     if (made) {
         kept_.push_front(std::move(*made));
-        if (kept_.size() > most_kept) kept_.pop_back();
+        if (kept_.size() > max_kept) kept_.pop_back();
     } else {
         failed_.insert(number);
         warnings_.push_back(made.error().text);

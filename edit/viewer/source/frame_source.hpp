@@ -68,7 +68,7 @@ class FrameSource final : public LiveSource {
     Desc desc_;
 
     /// Frames that are kept in main memory, the newest first.
-    static constexpr std::size_t most_kept = 6, most_ahead = 3;
+    static constexpr std::size_t max_kept = 6, max_ahead = 3;
     mutable std::mutex mutex_;  ///< guards the next six
     std::condition_variable changed_;
     std::list<std::shared_ptr<Decoded>> kept_;

@@ -25,8 +25,8 @@ VkExtent2D extent_of(const darkroom::PlanImage& image, std::uint32_t mip_level) 
 /// picture that is made once.
 constexpr std::uint32_t frames_to_settle = 20;
 
-VkExtent2D most_of(VkExtent2D a, VkExtent2D b) { return {std::max(a.width, b.width), std::max(a.height, b.height)}; }
-VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
+VkExtent2D max_of(VkExtent2D a, VkExtent2D b) { return {std::max(a.width, b.width), std::max(a.height, b.height)}; }
+VkExtent2D min_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
 bool is_equal(VkExtent2D a, VkExtent2D b) { return a.width == b.width && a.height == b.height; }
 
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
@@ -74,7 +74,7 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui,
     is_settling_ = !is_equal(extent, had);
     if (is_compiled_ && is_settled && is_same(wanted, compiled_)) return {};
     // While sizes come and go a plan only grows.
-    wanted.max_extent = is_waiting ? most_of(extent, had) : extent;
+    wanted.max_extent = is_waiting ? max_of(extent, had) : extent;
     return compile(wanted);
 }
 
@@ -83,7 +83,7 @@ Result<> LookView::compile(const CompileDesc& desc) {
     if (desc_.enlarges) compiled_.target_extent = desc.max_extent;
     if (is_compiled_) {
         const VkExtent2D asked = desc.max_extent;
-        least_pending_ = composer_.pending().is_pending ? least_of(least_pending_, asked) : asked;
+        least_pending_ = composer_.pending().is_pending ? min_of(least_pending_, asked) : asked;
         return composer_.compile_later(compiled_);
     }
     const Result<darkroom::Plan> plan = composer_.compile(compiled_);
@@ -96,7 +96,7 @@ Result<> LookView::compile(const CompileDesc& desc) {
 VkExtent2D LookView::most() const {
     const darkroom::Plan* const plan = composer_.current_plan();
     if (plan == nullptr) return {};
-    return composer_.pending().is_pending ? least_of(plan->extent, least_pending_) : plan->extent;
+    return composer_.pending().is_pending ? min_of(plan->extent, least_pending_) : plan->extent;
 }
 
 bool LookView::must_wait(VkExtent2D extent) const {

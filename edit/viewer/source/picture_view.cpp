@@ -12,7 +12,7 @@ namespace app {
 
 namespace {
 
-constexpr float least_zoom = 1.0F / 16, most_zoom = 64;
+constexpr float min_zoom = 1.0F / 16, max_zoom = 64;
 /// How near to the divider a press takes it, in heights of the font.
 constexpr float grip_height = 1.6F;
 
@@ -33,7 +33,7 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
     if (shown.can_zoom && is_free && io.MouseWheel != 0) {
         // What is under the mouse stays there.
         const float old = zoom_ > 0 ? zoom_ : fitted;
-        const float now = std::clamp(old * std::pow(1.25F, io.MouseWheel), least_zoom, most_zoom);
+        const float now = std::clamp(old * std::pow(1.25F, io.MouseWheel), min_zoom, max_zoom);
         const ImVec2 from_middle{mouse.x - corner.x - room.x / 2, mouse.y - corner.y - room.y / 2};
         center_x_ += from_middle.x * (1 / old - 1 / now) / width;
         center_y_ += from_middle.y * (1 / old - 1 / now) / height;

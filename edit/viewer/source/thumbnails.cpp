@@ -24,7 +24,7 @@ using darkroom::Result;
 namespace {
 
 /// As wide as a line of the menu has room for, on a screen of twice the usual scale.
-constexpr std::uint32_t most_width = 160;
+constexpr std::uint32_t max_width = 160;
 constexpr std::size_t columns = 8;
 
 /// With an amount that shows what it does, where its default is to do nothing. What reads a second picture gets the
@@ -75,7 +75,7 @@ struct Thumbnails::Small {
 Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, Desc desc, darkroom::FrameReadback read)
     : device_(device), frame_(frame), desc_(std::move(desc)), frame_read_(std::move(read)) {
     const VkExtent2D whole = frame.color.used_region().extent;
-    while (whole.width / divisor_ > most_width) divisor_ *= 2;
+    while (whole.width / divisor_ > max_width) divisor_ *= 2;
     extent_ = {(whole.width + divisor_ - 1) / divisor_, (whole.height + divisor_ - 1) / divisor_};
     // What the frame refers to goes; what a file stores of it stays.
     frame_.lights = {};

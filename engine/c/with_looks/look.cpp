@@ -65,8 +65,8 @@ struct Keeps {
 Result<> read_options(const DarkroomApplyOptions* given, Keeps& out) {
     const auto options = read_or_default(given, "DarkroomApplyOptions");
     if (!options) return failure(options.error());
-    if (options->keep_count > most_elements)
-        return user_error(fmt::format("keep_count = {}: allowed is at most {}", options->keep_count, most_elements));
+    if (options->keep_count > max_elements)
+        return user_error(fmt::format("keep_count = {}: allowed is at most {}", options->keep_count, max_elements));
     for (std::uint32_t i = 0; i < options->keep_count; ++i) {
         if (auto ok = needs("keeps", options->keeps, "a name of keeps", options->keeps ? options->keeps[i] : ""); !ok)
             return ok;

@@ -50,7 +50,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
                               .lights = frame.lights};
     StackProgram& program = *desc_.program;
     Clock& clock = *desc_.clock;
-    clock.most_unfinished = std::max(clock.most_unfinished, desc_.slots);
+    clock.max_unfinished = std::max(clock.max_unfinished, desc_.slots);
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
     view_index_ = frame.view;
     is_abandonable_ = false;
@@ -69,7 +69,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     // Effects have had their say: nothing of what follows fails.
     program.tables->upload(commands, clock.recordings);
     program.lit.upload(commands, clock.recordings);
-    if (auto* const staging = program.tables->spent_staging(clock.recordings, clock.most_unfinished))
+    if (auto* const staging = program.tables->spent_staging(clock.recordings, clock.max_unfinished))
         worker_.discard(*staging);
     value_copies_.begin(slot_);
     physical_->begin(commands, context_.vk, *schedule_, frame.view);
@@ -316,7 +316,7 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
     PassKernels& kernels = *desc_.program->kernels[pass];
     last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
     if (const gpu::Kernel* const kernel =
-            kernels.find(last_shapes_[pass], desc_.clock->recordings, desc_.clock->most_unfinished))
+            kernels.find(last_shapes_[pass], desc_.clock->recordings, desc_.clock->max_unfinished))
         return *kernel;
     worker_.want(kernels, last_shapes_[pass]);
     return kernels.complete();
@@ -367,7 +367,7 @@ void Chain::fill_custom(const ProgramPass& pass, const PassContext& context, VkE
 
 void Chain::prepare_pass(std::uint32_t index, const Frame& frame, const PassContext& context) {
     const ProgramPass& pass = program_of().passes[index];
-    std::array<gpu::Binding, gpu::most_images> images;
+    std::array<gpu::Binding, gpu::max_images> images;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) images[i] = bind(pass.inputs[i], frame);
     if (const auto watch = pass.watch())
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
@@ -378,7 +378,7 @@ void Chain::prepare_pass(std::uint32_t index, const Frame& frame, const PassCont
         prepared.outputs[prepared.output_count++] = bind_slot(schedule_->slot_of(version), mip_level, frame);
     });
     const std::span<const gpu::Binding> outputs(prepared.outputs.data(), prepared.output_count);
-    std::array<gpu::Kernel::Block, gpu::most_buffers> blocks;
+    std::array<gpu::Kernel::Block, gpu::max_buffers> blocks;
     for (std::size_t i = 0; i < pass.buffers.size(); ++i) {
         const auto range = physical_->buffer(schedule_->slot_of(pass.buffers[i].version), frame.view);
         blocks[i] = {range.handle, range.offset, range.size};

@@ -141,7 +141,7 @@ class Chain final : public Garbage {
     struct Prepared {
         const gpu::Kernel* kernel = nullptr;
         VkDescriptorSet set = VK_NULL_HANDLE;
-        std::array<gpu::Binding, gpu::most_outputs> outputs;
+        std::array<gpu::Binding, gpu::max_outputs> outputs;
         std::size_t output_count = 0;
         VkExtent2D extent{};
     };

@@ -130,7 +130,7 @@ Result<> Chain::build_lean() {
         PassKernels& kernels = *desc_.program->kernels[i];
         for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
             const auto is_there = [&] {
-                return kernels.find(shape, desc_.clock->recordings, desc_.clock->most_unfinished) != nullptr;
+                return kernels.find(shape, desc_.clock->recordings, desc_.clock->max_unfinished) != nullptr;
             };
             if (is_there()) continue;
             if (auto ok = kernels.build(context_, shape); !ok) return ok;
@@ -152,21 +152,21 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     for (const graph::Slot& slot : compiled_->slots())
         is_nearest_.push_back(!gpu::can_filter(context_, slot.desc.format) || gpu::is_depth(slot.desc.format) ? 1 : 0);
 
-    const std::size_t most_bytes = context_.traits.max_uniform_range;
-    std::size_t most_words = 0;
+    const std::size_t max_bytes = context_.traits.max_uniform_range;
+    std::size_t max_words = 0;
     VkDeviceSize at = align(plan::frame_words * 4, context_.traits.uniform_alignment);
     for (const plan::ProgramPass& pass : program_of().passes) {
         const std::size_t size = gpu::own_block_size(pass.spec);
-        if (size > most_bytes)
+        if (size > max_bytes)
             return user_error(
-                fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, most_bytes));
+                fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, max_bytes));
         block_at_.push_back(at);
         at += align(size, context_.traits.uniform_alignment);
-        most_words = std::max<std::size_t>(most_words, gpu::word_count(pass.spec.members));
+        max_words = std::max<std::size_t>(max_words, gpu::word_count(pass.spec.members));
     }
     slot_stride_ = at;
-    words_.resize(most_words + 1);
-    custom_.resize(plan::most_custom_vectors);
+    words_.resize(max_words + 1);
+    custom_.resize(plan::max_custom_vectors);
     auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
                                       gpu::Memory::Kind::Constants, "blocks");
     if (!blocks) return failure(std::move(blocks));

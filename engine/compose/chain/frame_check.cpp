@@ -266,9 +266,8 @@ Result<> check_target(const gpu::Context& context, const std::string& name, cons
 }
 
 Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
-    if (desc.watches.size() > most_watches)
-        return user_error(
-            fmt::format("compile: {} watches: allowed are at most {}", desc.watches.size(), most_watches));
+    if (desc.watches.size() > max_watches)
+        return user_error(fmt::format("compile: {} watches: allowed are at most {}", desc.watches.size(), max_watches));
     for (std::size_t i = 0; i < desc.watches.size(); ++i) {
         const Watch& watch = desc.watches[i];
         if (*watch_with(desc, watch.id) != i)

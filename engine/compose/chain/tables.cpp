@@ -11,7 +11,7 @@ namespace darkroom::compose {
 namespace {
 
 /// What is larger is freed by itself.
-constexpr std::size_t most_bytes_together = std::size_t{1} << 20U;
+constexpr std::size_t max_bytes_together = std::size_t{1} << 20U;
 
 bool is_same(const plan::FixedImage& a, const plan::FixedImage& b) {
     const bool is_neutral = a.import_index != ~0u, other_is_neutral = b.import_index != ~0u;
@@ -93,7 +93,7 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::Fixed
     out.places_.resize(images.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
         if (take_over(i)) continue;
-        if (plan::texels_of(images[i]).size() <= most_bytes_together) {
+        if (plan::texels_of(images[i]).size() <= max_bytes_together) {
             together.push_back(&images[i]);
             places_of_together.push_back(i);
             continue;

@@ -25,7 +25,7 @@ namespace darkroom::compose {
 /// Recording alone touches it.
 struct Clock {
     std::uint64_t recordings = 0;
-    std::uint32_t most_unfinished = 1;
+    std::uint32_t max_unfinished = 1;
 };
 
 struct StackProgram {

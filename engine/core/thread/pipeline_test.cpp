@@ -23,7 +23,7 @@ struct Recorder {
     std::mutex mutex;
     std::vector<std::size_t> begun, finished, encoded, reported;
     std::vector<std::string> errors;
-    std::size_t alive = 0, most_alive = 0, in_flight = 0, most_in_flight = 0;
+    std::size_t alive = 0, max_alive = 0, in_flight = 0, max_in_flight = 0;
     std::thread::id caller = std::this_thread::get_id();
     std::function<Result<>(char stage, std::size_t item)> fails = [](char, std::size_t) { return Result<>(); };
 
@@ -34,7 +34,7 @@ struct Recorder {
         };
         return run_pipeline(desc, {.decode =
                                        [&](std::size_t i) {
-                                           locked([&] { most_alive = std::max(most_alive, ++alive); });
+                                           locked([&] { max_alive = std::max(max_alive, ++alive); });
                                            work_a_little(i);
                                            return fails('d', i);
                                        },
@@ -42,7 +42,7 @@ struct Recorder {
                                        [&](std::size_t i) {
                                            EXPECT_EQ(std::this_thread::get_id(), caller);
                                            begun.push_back(i);
-                                           most_in_flight = std::max(most_in_flight, ++in_flight);
+                                           max_in_flight = std::max(max_in_flight, ++in_flight);
                                            return fails('b', i);
                                        },
                                    .finish =
@@ -86,8 +86,8 @@ TEST(Pipeline, TakesEveryItemThroughAllStagesInOrderWithinItsWindow) {
             EXPECT_EQ(recorder.reported, up_to(40));
             std::ranges::sort(recorder.encoded);
             EXPECT_EQ(recorder.encoded, up_to(40));
-            EXPECT_LE(recorder.most_in_flight, in_flight);
-            EXPECT_LE(recorder.most_alive, 40u);
+            EXPECT_LE(recorder.max_in_flight, in_flight);
+            EXPECT_LE(recorder.max_alive, 40u);
             EXPECT_GT(times.decode, 0);
             EXPECT_GT(times.encode, 0);
             EXPECT_GE(times.wall, times.wait_for_decode);
@@ -118,12 +118,12 @@ TEST(Pipeline, OthersGoOnWhileOneIsTold) {
     const PipelineDesc desc{.count = 40, .jobs = 2, .in_flight = 1};
     std::mutex mutex;
     std::condition_variable changed;
-    std::size_t encoded = 0, decoded = 0, told = 0, most_ahead = 0;
+    std::size_t encoded = 0, decoded = 0, told = 0, max_ahead = 0;
     const auto nothing = [](std::size_t) { return Result<>(); };
     run_pipeline(desc, {.decode =
                             [&](std::size_t) {
                                 const std::lock_guard lock(mutex);
-                                most_ahead = std::max(most_ahead, ++decoded - told);
+                                max_ahead = std::max(max_ahead, ++decoded - told);
                                 return Result<>();
                             },
                         .begin = nothing,
@@ -146,7 +146,7 @@ TEST(Pipeline, OthersGoOnWhileOneIsTold) {
                                 EXPECT_EQ(told++, item);
                             }});
     EXPECT_EQ(told, desc.count);
-    EXPECT_LE(most_ahead, desc.window());
+    EXPECT_LE(max_ahead, desc.window());
 }
 
 TEST(Pipeline, EndsAtTheFirstFailureAndDoesWhatComesBefore) {

@@ -285,7 +285,7 @@ std::vector<std::byte> Context::read_pipeline_cache(const std::filesystem::path&
     // The file is the hash of the driver's data, then the data: drivers are known to crash on damaged data, so a file
     // that does not match is ignored and written anew.
     std::vector<std::byte> data;
-    if (size <= sizeof(Hash) + most_pipeline_cache_bytes) data = read_file(path).value_or(std::vector<std::byte>{});
+    if (size <= sizeof(Hash) + max_pipeline_cache_bytes) data = read_file(path).value_or(std::vector<std::byte>{});
     if (data.size() > sizeof(Hash)) {
         Hash expected;
         std::memcpy(&expected, data.data(), sizeof expected);
@@ -323,7 +323,7 @@ void Context::save_pipeline_cache_if_grown() {
         return;
     }
     std::error_code error;
-    if (size > most_pipeline_cache_bytes) {
+    if (size > max_pipeline_cache_bytes) {
         // It holds what was used long ago and cannot be thinned out: the next start begins with an empty one.
         std::filesystem::remove(pipeline_cache_path_, error);
         pipelines_saved_ = created;

@@ -78,7 +78,7 @@ class Context {
     DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory
     std::shared_ptr<const void> memory_hooks_owner;    ///< of their `user`, where an interface over this one made it
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;   ///< finish() makes one unless the host's is here already
-    std::size_t most_pipeline_cache_bytes = std::size_t{64} << 20U;  ///< a larger one is not kept
+    std::size_t max_pipeline_cache_bytes = std::size_t{64} << 20U;  ///< a larger one is not kept
     VkSampler linear_sampler = VK_NULL_HANDLE, nearest_sampler = VK_NULL_HANDLE;
     VkSampler shadow_sampler = VK_NULL_HANDLE;  ///< compares with LESS_OR_EQUAL, lit outside
     VkPhysicalDeviceMemoryProperties memory{};

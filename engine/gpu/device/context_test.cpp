@@ -191,7 +191,7 @@ TEST_F(GpuPipelineCache, SavingFromSeveralThreadsLeavesAWholeFile) {
 TEST_F(GpuPipelineCache, OneThatIsTooLargeIsNotKept) {
     const Device device = create();
     fake_cache_data(device.context());
-    device.context().most_pipeline_cache_bytes = 200;
+    device.context().max_pipeline_cache_bytes = 200;
     grow(device);
     device.context().save_pipeline_cache_if_grown();
     ASSERT_FALSE(file().empty());

@@ -95,9 +95,9 @@ Result<> Kernel::State::create_layouts() {
 }
 
 void Kernel::State::update_set(const Invocation& invocation) const {
-    std::array<VkWriteDescriptorSet, 2 + most_images + most_outputs + most_buffers> writes;
-    std::array<VkDescriptorBufferInfo, most_buffers> buffers;
-    std::array<VkDescriptorImageInfo, most_images + most_outputs> images;
+    std::array<VkWriteDescriptorSet, 2 + max_images + max_outputs + max_buffers> writes;
+    std::array<VkDescriptorBufferInfo, max_buffers> buffers;
+    std::array<VkDescriptorImageInfo, max_images + max_outputs> images;
     std::uint32_t write_count = 0;
     const auto add_write = [&](std::uint32_t binding, VkDescriptorType type) -> VkWriteDescriptorSet& {
         VkWriteDescriptorSet& write = writes[write_count++];
@@ -158,7 +158,7 @@ void Kernel::State::draw(VkCommandBuffer commands, std::span<const Binding> outp
     const Dispatch& vk = context.vk;
     const Region& region = outputs.front().region;
     const VkRect2D area{region.offset, region.extent};
-    std::array<VkRenderingAttachmentInfo, most_outputs> attachments;
+    std::array<VkRenderingAttachmentInfo, max_outputs> attachments;
     for (std::size_t index = 0; index < spec.outputs.size(); ++index) {
         attachments[index] = {
             .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
@@ -198,8 +198,8 @@ Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpe
 
 Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpec& spec, Stage stage,
                                                const KernelText& text) {
-    DARKROOM_ASSERT((spec.compute || !spec.outputs.empty()) && spec.buffers.size() <= most_buffers);
-    DARKROOM_ASSERT(spec.outputs.size() <= most_outputs && spec.images.size() <= most_images);
+    DARKROOM_ASSERT((spec.compute || !spec.outputs.empty()) && spec.buffers.size() <= max_buffers);
+    DARKROOM_ASSERT(spec.outputs.size() <= max_outputs && spec.images.size() <= max_images);
     if (Result<> checked = usable(context, spec, stage); !checked) return failure(std::move(checked));
     std::unique_ptr<Kernel> kernel(new Kernel);
     kernel->state_ = std::make_unique<State>(context);

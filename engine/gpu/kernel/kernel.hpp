@@ -58,9 +58,9 @@ inline constexpr VkBufferUsageFlags block_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER
 
 /// Limits of one kernel: record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and
 /// 4 attachments.
-inline constexpr std::uint32_t most_images = 16;
-inline constexpr std::uint32_t most_outputs = 4;
-inline constexpr std::uint32_t most_buffers = 4;
+inline constexpr std::uint32_t max_images = 16;
+inline constexpr std::uint32_t max_outputs = 4;
+inline constexpr std::uint32_t max_buffers = 4;
 
 enum class Stage : std::uint8_t { Compute, Raster };
 

@@ -117,7 +117,7 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
     };
     constexpr VkColorComponentFlags all_components =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-    std::array<VkPipelineColorBlendAttachmentState, most_outputs> blends{};
+    std::array<VkPipelineColorBlendAttachmentState, max_outputs> blends{};
     blends.fill({
         .blendEnable = spec.is_additive ? VK_TRUE : VK_FALSE,
         .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,

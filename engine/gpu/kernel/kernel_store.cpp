@@ -34,7 +34,7 @@ KernelStore::Key KernelStore::key_of(const KernelSpec& spec, Stage stage, const 
 }
 
 Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, Stage stage) {
-    DARKROOM_ASSERT(spec.outputs.size() <= most_outputs);
+    DARKROOM_ASSERT(spec.outputs.size() <= max_outputs);
     const KernelText text(spec, stage);
     const Key key = key_of(spec, stage, text.digest);
     std::unique_lock lock(mutex_);
@@ -84,9 +84,9 @@ void KernelStore::drop_unused() {
     for (auto place = entries_.begin(); place != entries_.end(); ++place)
         if (place->second.error || (place->second.kernel && place->second.kernel.use_count() == 1))
             unused.push_back(place);
-    if (unused.size() <= most_unused_) return;
+    if (unused.size() <= max_unused_) return;
     std::ranges::sort(unused, {}, [](Place place) { return place->second.last_used; });
-    unused.resize(unused.size() - most_unused_ * 3 / 4);
+    unused.resize(unused.size() - max_unused_ * 3 / 4);
     for (const Place place : unused) entries_.erase(place);
 }
 

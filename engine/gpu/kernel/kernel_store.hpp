@@ -19,9 +19,8 @@ namespace darkroom::gpu {
 
 class KernelStore {
   public:
-    /// Kernels that nobody holds stay, the `most_unused` used last.
-    explicit KernelStore(Context& context, std::size_t most_unused = 256)
-        : context_(context), most_unused_(most_unused) {}
+    /// Kernels that nobody holds stay, the `max_unused` used last.
+    explicit KernelStore(Context& context, std::size_t max_unused = 256) : context_(context), max_unused_(max_unused) {}
 
     /// Makes the kernel, or waits for a thread that is making it, or returns the one that is there. Errors: those of
     /// Kernel::create. A fault of the text is not tried again; one of the machine is.
@@ -41,7 +40,7 @@ class KernelStore {
         Digest text{};
         Stage stage = Stage::Compute;
         bool is_additive = false;
-        std::array<VkFormat, most_outputs> outputs{};
+        std::array<VkFormat, max_outputs> outputs{};
         friend bool operator==(const Key&, const Key&) = default;
     };
     struct HashOfKey {
@@ -57,7 +56,7 @@ class KernelStore {
     void drop_unused();
 
     Context& context_;
-    std::size_t most_unused_;
+    std::size_t max_unused_;
     mutable std::mutex mutex_;
     std::condition_variable built_;
     std::unordered_map<Key, Entry, HashOfKey> entries_;

@@ -66,7 +66,7 @@ std::array<std::vector<std::byte>, 2> bits_of(Stage stage, const KernelSpec& spe
 }
 
 /// Of bytes at the same place.
-int most_apart(const std::array<std::vector<std::byte>, 2>& a, const std::array<std::vector<std::byte>, 2>& b) {
+int largest_difference(const std::array<std::vector<std::byte>, 2>& a, const std::array<std::vector<std::byte>, 2>& b) {
     int most = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
         for (std::size_t j = 0; j < a[i].size(); ++j)
@@ -94,7 +94,7 @@ TEST_P(GpuKernelStages, GiveTheSameBitsWhenTheyAdd) {
     // Hardware blends with a precision no lower than the format's (Vulkan specification, "Blending"): a code of two
     // ways to round.
     if (!test::is_lavapipe() && GetParam() == VK_FORMAT_R8G8B8A8_UNORM)
-        EXPECT_LE(most_apart(twice, blended), 1);
+        EXPECT_LE(largest_difference(twice, blended), 1);
     else
         EXPECT_EQ(twice, blended);
     EXPECT_NE(once, twice);

@@ -53,9 +53,9 @@ Result<> check_head(const Head& head, std::span<const std::byte> file) {
     if (head.profile >= profile_count)
         return user_error(
             fmt::format("baked kernels: profile {}: allowed is 0 to {}", head.profile, profile_count - 1));
-    if (head.count > BakedShaders::most_shaders)
+    if (head.count > BakedShaders::max_shaders)
         return user_error(fmt::format("baked kernels: they say that they are {}; allowed is at most {}", head.count,
-                                      BakedShaders::most_shaders));
+                                      BakedShaders::max_shaders));
     const std::uint64_t wanted = sizeof(Head) + std::uint64_t{head.count} * sizeof(IndexEntry) + head.bytes;
     if (wanted != file.size())
         return user_error(fmt::format("baked kernels: {} kernels in {} bytes are a file of {}, but {} bytes are there",
@@ -110,9 +110,9 @@ Result<> check_kernel(std::span<const std::byte> file, std::size_t number, std::
 std::string_view profile_name(DeviceProfile profile) { return profile == DeviceProfile::Software ? "software" : "gpu"; }
 
 Result<BakedShaders> BakedShaders::read(std::span<const std::byte> file) {
-    if (file.size() > most_bytes)
+    if (file.size() > max_bytes)
         return user_error(
-            fmt::format("baked kernels: {} bytes; allowed is at most {}", file.size(), std::size_t{most_bytes}));
+            fmt::format("baked kernels: {} bytes; allowed is at most {}", file.size(), std::size_t{max_bytes}));
     if (file.size() < sizeof(Head) || read_at<Head>(file, 0).magic != file_magic)
         return user_error("baked kernels: the bytes are not a file that 'darkroom bake' wrote");
     const auto head = read_at<Head>(file, 0);

@@ -36,8 +36,8 @@ struct ShadersToBake {
 
 class BakedShaders {
   public:
-    static constexpr std::size_t most_bytes = std::size_t{16} << 20U;  ///< of a file
-    static constexpr std::size_t most_shaders = 65536;
+    static constexpr std::size_t max_bytes = std::size_t{16} << 20U;  ///< of a file
+    static constexpr std::size_t max_shaders = 65536;
 
     BakedShaders() = default;
     /// Needs no memory but for a copy of the file. Errors: no such file, one of another version, one that is damaged or

@@ -111,7 +111,7 @@ TEST(BakedShaders, EveryNumberIsCheckedBeforeItIsUsed) {
     longer.push_back(std::byte{0});
     put(longer, bytes_at, static_cast<std::uint32_t>(longer.size() - index_at - 3 * index_size));
     expect_refused(with_right_hash(longer), "1 bytes after the last kernel");
-    expect_refused(Bytes(BakedShaders::most_bytes + 1), "16777217 bytes; allowed is at most 16777216");
+    expect_refused(Bytes(BakedShaders::max_bytes + 1), "16777217 bytes; allowed is at most 16777216");
     expect_refused(Bytes(64), "not a file that 'darkroom bake' wrote");
 }
 

@@ -38,7 +38,7 @@ Hash hash_of(const std::filesystem::path& path, std::span<const std::byte> words
     return content_hash(all);
 }
 
-constexpr std::uintmax_t most_entry_bytes = std::uintmax_t{16} << 20;
+constexpr std::uintmax_t max_entry_bytes = std::uintmax_t{16} << 20;
 
 /// An entry is the hash of its words under its name, then the words.
 std::optional<Words> read_entry(const std::filesystem::path& path) {
@@ -46,7 +46,7 @@ std::optional<Words> read_entry(const std::filesystem::path& path) {
     if (!std::filesystem::exists(path, error)) return {};
     // What it says is run, so nobody else may have written it.
     if (!is_of_this_user_alone(path) || !is_of_this_user_alone(path.parent_path())) return {};
-    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_entry_bytes});
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_entry_bytes});
     if (!bytes || bytes->size() <= sizeof(Hash) || bytes->size() % sizeof(std::uint32_t) != 0) return {};
     Hash expected;
     std::memcpy(&expected, bytes->data(), sizeof expected);
@@ -121,14 +121,14 @@ Failure missing(const ShaderSource& source, const BakedShaders& baked) {
 
 }  // namespace
 
-ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes)
-    : has_compiler(!glsl_compiler_version().empty()), folder_(std::move(cache_folder)), most_bytes_(most_bytes) {}
+ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t max_bytes)
+    : has_compiler(!glsl_compiler_version().empty()), folder_(std::move(cache_folder)), max_bytes_(max_bytes) {}
 
 void ShaderCompiler::add_entry(const std::filesystem::path& path, const Words& words) {
     const std::uintmax_t bytes = write_entry(path, words);
     const std::lock_guard lock(size_mutex_);
     if (known_bytes_) *known_bytes_ += bytes;
-    if (!known_bytes_ || *known_bytes_ > most_bytes_) known_bytes_ = thin_out(folder_, most_bytes_);
+    if (!known_bytes_ || *known_bytes_ > max_bytes_) known_bytes_ = thin_out(folder_, max_bytes_);
 }
 
 Result<Words> ShaderCompiler::compile(const ShaderSource& source) {

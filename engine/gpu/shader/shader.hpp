@@ -34,10 +34,10 @@ struct ShaderSource {
 class ShaderCompiler {
   public:
     /// Some thousands of kernels.
-    static constexpr std::uintmax_t most_bytes_by_default = std::uintmax_t{128} << 20U;
-    /// An empty folder: no disk cache. When its entries exceed `most_bytes`, those that were not used for longest are
+    static constexpr std::uintmax_t max_bytes_by_default = std::uintmax_t{128} << 20U;
+    /// An empty folder: no disk cache. When its entries exceed `max_bytes`, those that were not used for longest are
     /// removed, down to three quarters of it.
-    explicit ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes = most_bytes_by_default);
+    explicit ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t max_bytes = max_bytes_by_default);
     /// What is asked first. Before the first compile().
     void set_baked(BakedShaders baked) { baked_ = std::move(baked); }
     /// Of a text that nobody has, where there is no compiler.
@@ -60,7 +60,7 @@ class ShaderCompiler {
 
     BakedShaders baked_;
     std::filesystem::path folder_;
-    std::uintmax_t most_bytes_;
+    std::uintmax_t max_bytes_;
     std::mutex size_mutex_;                      ///< guards the next member
     std::optional<std::uintmax_t> known_bytes_;  ///< when this process last looked, and what it added since
 };

@@ -51,7 +51,7 @@ Shape expected_shape(const Program& program, const graph::Compiled& compiled, co
         const VkExtent2D extent = graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
         return gpu::Region{{}, extent, extent};
     };
-    std::array<gpu::Binding, gpu::most_images> inputs;
+    std::array<gpu::Binding, gpu::max_images> inputs;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         const PassInput& input = pass.inputs[i];
         if (input.table == no_table) {

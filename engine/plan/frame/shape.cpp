@@ -88,7 +88,7 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
             steps[literal.step].baked.push_back({literal.row, value});
     }
     if (pass.as<FusedPass>() != nullptr) {
-        const std::size_t known = std::min(steps.size(), Shape::most_steps);
+        const std::size_t known = std::min(steps.size(), Shape::max_steps);
         for (std::size_t i = 0; i < known; ++i) {
             steps[i].is_certain = shape.is_on(i);
             steps[i].is_plain = shape.is_plain(i);

@@ -18,8 +18,8 @@ struct ProgramPass;
 /// mask, two bits a step; how regions lie and what it does for the target; and the values of the literals that the
 /// pass's text names, as far as they fit.
 struct Shape {
-    static constexpr std::size_t most_steps = 128;  ///< those behind them keep their branches
-    std::array<std::uint64_t, most_steps / 32> steps{};
+    static constexpr std::size_t max_steps = 128;  ///< those behind them keep their branches
+    std::array<std::uint64_t, max_steps / 32> steps{};
     std::uint64_t flags = 0;
     std::uint64_t choices = 0;
     static constexpr std::uint64_t rays_meet = 1;   ///< in flags
@@ -28,8 +28,7 @@ struct Shape {
     friend bool operator==(const Shape&, const Shape&) = default;
 
     void set_step(std::size_t step, bool is_plain) {
-        if (step < most_steps)
-            steps[step / 32] |= (is_plain ? std::uint64_t{1} : std::uint64_t{3}) << (2 * (step % 32));
+        if (step < max_steps) steps[step / 32] |= (is_plain ? std::uint64_t{1} : std::uint64_t{3}) << (2 * (step % 32));
     }
     [[nodiscard]] bool is_on(std::size_t step) const { return (steps[step / 32] >> (2 * (step % 32)) & 1) != 0; }
     [[nodiscard]] bool is_plain(std::size_t step) const { return (steps[step / 32] >> (2 * (step % 32)) & 2) == 0; }
@@ -48,7 +47,7 @@ void lay_out_literals(ProgramPass& pass);
 
 [[nodiscard]] Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass);
 /// Same images, outputs and members as the complete one; only the steps that are on, and no branches, but for those
-/// behind Shape::most_steps.
+/// behind Shape::max_steps.
 [[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape);
 
 }  // namespace darkroom::plan

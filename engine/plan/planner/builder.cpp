@@ -181,9 +181,9 @@ PassImage Builder::remember_written(PassImage image, graph::Version version) {
 bool Builder::check_outputs(const KernelPassDesc& desc) {
     if (!error.empty() || desc.output.index >= images_.size()) return false;
     const std::string_view effect = planner_.stack_[entry_].info->name;
-    if (desc.more_outputs.size() >= gpu::most_outputs)
+    if (desc.more_outputs.size() >= gpu::max_outputs)
         error = fmt::format("effect '{}': pass '{}' writes {} images; at most {} are allowed", effect, desc.name,
-                            desc.more_outputs.size() + 1, gpu::most_outputs);
+                            desc.more_outputs.size() + 1, gpu::max_outputs);
     for (const PassImage more : desc.more_outputs) {
         if (!error.empty() || more.index >= images_.size()) return false;
         const Planner::Facts &first = planner_.facts_.at(images_[desc.output.index].version.index),

@@ -73,9 +73,9 @@ void Builder::value_side(std::string name, PassBuffer value) {
 }
 
 bool Builder::add_values(ProgramPass& pass, FusedStep& step, const KernelPassDesc& desc) {
-    if (desc.values.size() > gpu::most_buffers)
+    if (desc.values.size() > gpu::max_buffers)
         error = fmt::format("effect '{}': pass '{}' reads {} values; at most {} are allowed",
-                            planner_.stack_[entry_].info->name, desc.name, desc.values.size(), gpu::most_buffers);
+                            planner_.stack_[entry_].info->name, desc.name, desc.values.size(), gpu::max_buffers);
     for (const auto& [name, value] : desc.values) {
         if (!error.empty() || !check_value(fmt::format("pass '{}'", desc.name), name, value)) return false;
         step.images.push_back(name);
@@ -99,9 +99,9 @@ bool Builder::check_compute(const ComputePassDesc& desc) {
     if (desc.shared_bytes > limits.shared_bytes)
         return refuse(fmt::format("{} bytes of shared memory; at most {} are allowed here", desc.shared_bytes,
                                   limits.shared_bytes));
-    if (desc.outputs.size() > gpu::most_outputs || desc.buffers.size() > gpu::most_buffers)
+    if (desc.outputs.size() > gpu::max_outputs || desc.buffers.size() > gpu::max_buffers)
         return refuse(fmt::format("{} outputs and {} buffers; at most {} and {} are allowed", desc.outputs.size(),
-                                  desc.buffers.size(), gpu::most_outputs, gpu::most_buffers));
+                                  desc.buffers.size(), gpu::max_outputs, gpu::max_buffers));
     if (desc.groups[0] == 0 && desc.outputs.empty() && desc.inputs.empty())
         return refuse("no image whose extent says how many groups there are");
     const auto is_known = [&](const ComputePassDesc::Output& out) { return out.image.index < images_.size(); };

@@ -174,18 +174,18 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             why = fmt::format("{} reads the picture at moved coordinates", name);
         else if (!from.reader.empty())
             why = fmt::format("{} reads the picture before it, too", from.reader);
-        else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
-            why = fmt::format("a kernel reads at most {} images", gpu::most_images);
-        else if (kernels_[kernel].values.size() + entry_values_read_[entry].size() > gpu::most_buffers)
-            why = fmt::format("a kernel reads at most {} values", gpu::most_buffers);
+        else if (kernels_[kernel].images.size() + side_count >= gpu::max_images)
+            why = fmt::format("a kernel reads at most {} images", gpu::max_images);
+        else if (kernels_[kernel].values.size() + entry_values_read_[entry].size() > gpu::max_buffers)
+            why = fmt::format("a kernel reads at most {} values", gpu::max_buffers);
         else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors +
                      (second == nullptr ? 0 : vectors_of(second->steps)) >
-                 most_fused_vectors)
-            why = fmt::format("a kernel holds at most {} vectors of its effects", most_fused_vectors);
-        else if (kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size()) >= most_fused_entries)
-            why = fmt::format("a kernel holds at most {} entries", most_fused_entries);
-        else if (joined_entries_ >= most_joined_entries)
-            why = fmt::format("a plan joins at most {} entries to the kernels of others", most_joined_entries);
+                 max_fused_vectors)
+            why = fmt::format("a kernel holds at most {} vectors of its effects", max_fused_vectors);
+        else if (kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size()) >= max_fused_entries)
+            why = fmt::format("a kernel holds at most {} entries", max_fused_entries);
+        else if (joined_entries_ >= max_joined_entries)
+            why = fmt::format("a plan joins at most {} entries to the kernels of others", max_joined_entries);
         else
             ++joined_entries_;
         if (!why.empty()) {
@@ -235,7 +235,7 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
     if (values_[index].image.is_valid()) return values_[index].image;
     return materialise_into(
         index, create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate),
-        kernels_.size() > most_gated_kernels, why);
+        kernels_.size() > max_gated_kernels, why);
 }
 
 Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Version image, bool is_always_on,

@@ -41,10 +41,10 @@ bool Planner::can_filter(const PassInput& input) const {
 
 Result<> Planner::settle_inputs(ProgramPass& pass) {
     limit_storage_images(pass);
-    if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
+    if (pass.spec.images.size() > gpu::max_images || pass.spec.custom_vectors > max_custom_vectors)
         return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
-                                      pass.name, pass.spec.images.size(), pass.spec.custom_vectors, gpu::most_images,
-                                      most_custom_vectors));
+                                      pass.name, pass.spec.images.size(), pass.spec.custom_vectors, gpu::max_images,
+                                      max_custom_vectors));
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         gpu::KernelImage& image = pass.spec.images[i];
         image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&

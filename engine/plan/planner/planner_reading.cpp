@@ -18,7 +18,7 @@ Result<std::size_t> Planner::append_reading(std::uint32_t entry, std::size_t inp
     }
     program_.is_mixable[entry] = false;
     const bool goes_on =
-        values_[input].reading != no_reading && readings_[values_[input].reading].steps.size() < most_fused_entries;
+        values_[input].reading != no_reading && readings_[values_[input].reading].steps.size() < max_fused_entries;
     const bool is_image = values_[input].image.is_valid();
     Reading reading = goes_on ? readings_[values_[input].reading] : Reading{.size = values_[input].size};
     if (!goes_on) {

@@ -29,7 +29,7 @@ void end_with_program() {
 bool greet(std::string_view error) {
     // Without it this process ends when it is asked no more.
     if (std::optional<std::jthread> watching = start_thread(end_with_program)) watching->detach();
-    error = error.substr(0, most_error_bytes);
+    error = error.substr(0, max_error_bytes);
     const ConfinedGreeting greeting{.error_size = static_cast<std::uint32_t>(error.size())};
     return send_all(socket_of_program, &greeting, sizeof greeting) &&
            send_all(socket_of_program, error.data(), error.size());

@@ -78,7 +78,7 @@ Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& c
 }  // namespace
 
 Result<FrameCamera> read_camera(const std::filesystem::path& path) {
-    auto bytes = read_file(path, {.max_size = most_toml_bytes});
+    auto bytes = read_file(path, {.max_size = max_toml_bytes});
     if (!bytes) return failure(std::move(bytes));
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const Result<toml::table> table = parse_toml(text, one_printable_line(path.string()));

@@ -73,9 +73,9 @@ std::shared_ptr<const ExrAttributes> Decoder::attributes(std::size_t part) const
 }
 
 std::uint32_t Decoder::band_rows(std::size_t part, std::size_t row_bytes) const {
-    constexpr std::size_t most_bytes = std::size_t{1} << 26;
+    constexpr std::size_t max_bytes = std::size_t{1} << 26;
     const std::uint32_t unit = state_->opened.source->row_unit(part);
-    const auto fitting = static_cast<std::uint32_t>(std::clamp<std::size_t>(most_bytes / row_bytes, 1, 128));
+    const auto fitting = static_cast<std::uint32_t>(std::clamp<std::size_t>(max_bytes / row_bytes, 1, 128));
     return std::max(unit, fitting / unit * unit);
 }
 

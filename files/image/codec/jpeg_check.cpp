@@ -52,13 +52,13 @@ JpegStream walk(std::span<const std::byte> stream) {
 }
 
 Result<> add_scans(const JpegStream& stream, std::uint64_t& work) {
-    if (stream.scans > JpegScans::most_scans)
+    if (stream.scans > JpegScans::max_scans)
         return user_error(
-            fmt::format("its picture comes in {} scans, at most {} are allowed", stream.scans, JpegScans::most_scans));
+            fmt::format("its picture comes in {} scans, at most {} are allowed", stream.scans, JpegScans::max_scans));
     work += stream.scans * stream.pixels;
-    if (work > JpegScans::most_work)
+    if (work > JpegScans::max_work)
         return user_error(fmt::format("{} scans of {} pixels: scans times pixels may be {}", stream.scans,
-                                      stream.pixels, JpegScans::most_work));
+                                      stream.pixels, JpegScans::max_work));
     return {};
 }
 

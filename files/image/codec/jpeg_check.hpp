@@ -13,8 +13,8 @@ namespace darkroom {
 /// A scan may go over all pixels again, for a few bytes: what the streams of a picture ask of a decoder, added up.
 class JpegScans {
   public:
-    static constexpr std::uint64_t most_scans = 100;                    ///< of a stream
-    static constexpr std::uint64_t most_work = std::uint64_t{1} << 31;  ///< scans times pixels, of all streams
+    static constexpr std::uint64_t max_scans = 100;                    ///< of a stream
+    static constexpr std::uint64_t max_work = std::uint64_t{1} << 31;  ///< scans times pixels, of all streams
 
     [[nodiscard]] Result<> add(std::span<const std::byte> stream);
 

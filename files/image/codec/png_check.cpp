@@ -97,12 +97,12 @@ Result<> check_profile(std::span<const std::byte> data) {
     if (start > 81 || start > data.size()) return user_error("damaged: the profile of its colors has no name");
     const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-    std::vector<std::byte> profile(std::min(most_png_profile_bytes, (data.size() - start) * 1032));
+    std::vector<std::byte> profile(std::min(max_png_profile_bytes, (data.size() - start) * 1032));
     std::size_t size = 0;
     const libdeflate_result result = libdeflate_zlib_decompress(inflate.get(), data.data() + start, data.size() - start,
                                                                 profile.data(), profile.size(), &size);
     if (result == LIBDEFLATE_INSUFFICIENT_SPACE)
-        return user_error(fmt::format("the profile of its colors has more than {} bytes", most_png_profile_bytes));
+        return user_error(fmt::format("the profile of its colors has more than {} bytes", max_png_profile_bytes));
     if (result != LIBDEFLATE_SUCCESS) return user_error("damaged: the profile of its colors cannot be inflated");
     return {};
 }
@@ -158,7 +158,7 @@ class PngChecker {
         if (is_first) {
             const Result<std::uint64_t> most = check_header(chunk.data, file_.size());
             if (!most) return failure(most.error());
-            most_packed_ = *most;
+            max_packed_ = *most;
             std::ranges::copy(chunk.data, header_.begin());
         }
         if (chunk.type == "PLTE") {
@@ -169,10 +169,10 @@ class PngChecker {
         }
         if (chunk.type == "IDAT") {
             packed_size_ += chunk.data.size();
-            if (packed_size_ > most_packed_)
+            if (packed_size_ > max_packed_)
                 return user_error(fmt::format(
                     "its pixels are packed in {} bytes, {} are allowed for a picture of {}x{}", packed_size_,
-                    most_packed_, big_endian(header_), big_endian(std::span(header_).subspan(4))));
+                    max_packed_, big_endian(header_), big_endian(std::span(header_).subspan(4))));
         }
         if (chunk.type == "IDAT" && header_[9] == std::byte{3}) append(packed_, chunk.data);
         const bool is_of_picture =
@@ -205,7 +205,7 @@ class PngChecker {
     std::array<std::byte, 13> header_{};
     std::vector<std::string_view> seen_;
     std::size_t colors_ = 0;
-    std::uint64_t packed_size_ = 0, most_packed_ = 0;
+    std::uint64_t packed_size_ = 0, max_packed_ = 0;
     bool is_as_it_was_ = true;
 };
 

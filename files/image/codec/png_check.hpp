@@ -11,7 +11,7 @@
 namespace darkroom {
 
 /// What a profile of colours may inflate to.
-inline constexpr std::size_t most_png_profile_bytes = std::size_t{4} << 20;
+inline constexpr std::size_t max_png_profile_bytes = std::size_t{4} << 20;
 
 /// The file as a decoder may see it; empty: as it is. Left are the picture, its palette and transparency, what says of
 /// small numbers which colours they are, the first profile of colours, and of EXIF the orientation. An error names no

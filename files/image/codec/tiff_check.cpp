@@ -45,14 +45,14 @@ constexpr std::array<std::uint32_t, 31> kept_tags{256, 257, 258, 259, 262, 266, 
                                                   282, 283, 284, 292, 293, 296, 317, 320, 322, 323, 324,
                                                   325, 332, 338, 339, 347, 529, 530, 531, 532};
 
-constexpr std::uint64_t most_tile_side = 8192;
+constexpr std::uint64_t max_tile_side = 8192;
 // A tile may be as large as the picture, between these.
 constexpr std::uint64_t always_tile_bytes = std::uint64_t{1} << 24;
-constexpr std::uint64_t most_tile_bytes = std::uint64_t{1} << 28;
-constexpr std::uint64_t most_tags = 4096;
-constexpr std::uint64_t most_samples = 1024;
+constexpr std::uint64_t max_tile_bytes = std::uint64_t{1} << 28;
+constexpr std::uint64_t max_tags = 4096;
+constexpr std::uint64_t max_samples = 1024;
 // A decoder reads each strip's bytes, be they those of another, too.
-constexpr std::uint64_t most_uses_of_bytes = 4;
+constexpr std::uint64_t max_uses_of_bytes = 4;
 
 constexpr std::uint32_t uncompressed = 1, jpeg_compressed = 7;
 constexpr std::array<std::uint32_t, 10> known_compressions{1, 2, 3, 4, 5, 7, 8, 32773, 32946, 50000};
@@ -108,7 +108,7 @@ class TiffChecker {
         const std::size_t count_bytes = is_big_tiff_ ? 8 : 2, entry_bytes = is_big_tiff_ ? 20 : 12;
         if (!fits(place, count_bytes)) return cut_off();
         const std::uint64_t count = number(place, count_bytes);
-        if (count > most_tags) return malformed(fmt::format("{} tags, at most {} are allowed", count, most_tags));
+        if (count > max_tags) return malformed(fmt::format("{} tags, at most {} are allowed", count, max_tags));
         directory_ = place + count_bytes;
         if (!fits(directory_, count * entry_bytes + pointer_bytes())) return cut_off();
         tags_end_ = directory_ + count * entry_bytes;
@@ -180,7 +180,7 @@ class TiffChecker {
         };
         for (const Field& field :
              {Field{&width_, image_width, 0, any}, Field{&height_, image_length, 0, any},
-              Field{&bits_, bits_per_sample, 1, 64}, Field{&samples_, samples_per_pixel, 1, most_samples},
+              Field{&bits_, bits_per_sample, 1, 64}, Field{&samples_, samples_per_pixel, 1, max_samples},
               Field{&compression_, compression_tag, uncompressed, 65535}, Field{&planar_, planar_configuration, 1, 2},
               Field{&rows_, rows_per_strip, any, any}}) {
             const Result<std::uint64_t> read = count_of(field.tag, field.otherwise, field.most);
@@ -252,13 +252,13 @@ class TiffChecker {
         chunk_width_ = width_;
         chunk_height_ = std::min(rows_, height_);
         if (is_tiled) {
-            const Result<std::uint64_t> across = count_of(tile_width, 0, most_tile_side);
-            const Result<std::uint64_t> down = count_of(tile_length, 0, most_tile_side);
+            const Result<std::uint64_t> across = count_of(tile_width, 0, max_tile_side);
+            const Result<std::uint64_t> down = count_of(tile_length, 0, max_tile_side);
             if (!across || !down) {
                 const Entry *const wide = find(tile_width), *const high = find(tile_length);
                 if (wide == nullptr || high == nullptr) return malformed("a tile without a width or a height");
                 return user_error(fmt::format("tiles of {}x{}, [1, {}] a side is allowed", value(*wide, 0),
-                                              value(*high, 0), most_tile_side));
+                                              value(*high, 0), max_tile_side));
             }
             chunk_width_ = *across;
             chunk_height_ = *down;
@@ -269,11 +269,11 @@ class TiffChecker {
         const std::uint64_t chunk_bytes = bytes_of(chunk_width_, chunk_height_);
         // A decoder takes a tile several times over, however little of it is in the picture. Sides are multiples of 16.
         const auto rounded = [](std::uint64_t side) { return (side + 15) / 16 * 16; };
-        const std::uint64_t most_bytes =
-            std::clamp(bytes_of(rounded(width_), rounded(height_)), always_tile_bytes, most_tile_bytes);
-        if (is_tiled && chunk_bytes > most_bytes)
+        const std::uint64_t max_bytes =
+            std::clamp(bytes_of(rounded(width_), rounded(height_)), always_tile_bytes, max_tile_bytes);
+        if (is_tiled && chunk_bytes > max_bytes)
             return user_error(fmt::format("tiles of {}x{} pixels need {} bytes each, at most {} are allowed",
-                                          chunk_width_, chunk_height_, chunk_bytes, most_bytes));
+                                          chunk_width_, chunk_height_, chunk_bytes, max_bytes));
         if (auto checked = check_decoded_size(chunk_bytes * (is_tiled ? columns * lines : 1) * planes, file_.size());
             !checked)
             return checked;
@@ -300,7 +300,7 @@ class TiffChecker {
             if (overlaps_directory(at, size))
                 return malformed(fmt::format("{} {} of {} lies in the directory", what, i + 1, count));
             total += size;
-            if (total > file_.size() * most_uses_of_bytes)
+            if (total > file_.size() * max_uses_of_bytes)
                 return user_error(fmt::format("{}s of {} bytes and more in a file of {}: they share too many", what,
                                               total, file_.size()));
             if (size < needed)

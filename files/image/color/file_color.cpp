@@ -114,7 +114,7 @@ std::vector<std::byte> profile_of_png(Bytes chunk) {
     if (begin >= chunk.size()) return {};
     const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
         libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-    std::vector<std::byte> out(most_png_profile_bytes);
+    std::vector<std::byte> out(max_png_profile_bytes);
     std::size_t size = 0;
     const Bytes packed = chunk.subspan(begin);
     if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), out.data(), out.size(), &size) !=

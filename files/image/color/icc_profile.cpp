@@ -26,8 +26,8 @@ bool is(Bytes bytes, std::size_t offset, std::string_view text) {
 }
 
 Bytes tag(Bytes profile, std::string_view name) {
-    constexpr std::uint32_t most_tags = 100;
-    const std::uint32_t count = std::min(number(profile, 128), most_tags);
+    constexpr std::uint32_t max_tags = 100;
+    const std::uint32_t count = std::min(number(profile, 128), max_tags);
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::size_t entry = 132 + std::size_t{12} * i;
         if (is(profile, entry, name)) return piece(profile, number(profile, entry + 4), number(profile, entry + 8));

@@ -63,8 +63,8 @@ ShownDifference shown_difference(const Picture& reference, const Picture& test, 
             to[0] = no_difference;
         }
     }
-    constexpr std::uint32_t most_gain = 128;
-    while (out.gain < most_gain && largest * static_cast<float>(2 * out.gain) <= 1) out.gain *= 2;
+    constexpr std::uint32_t max_gain = 128;
+    while (out.gain < max_gain && largest * static_cast<float>(2 * out.gain) <= 1) out.gain *= 2;
     for (std::size_t i = 0; i < out.picture.pixels.size(); i += 4) {
         float* const pixel = &out.picture.pixels[i];
         if (pixel[0] == no_difference)

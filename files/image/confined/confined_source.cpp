@@ -122,8 +122,8 @@ std::uint64_t ConfinedSource::decoded_size() const {
 
 Result<> ConfinedSource::read(std::size_t part, std::uint32_t row, std::uint32_t rows,
                               std::span<const SamplePlace> places) {
-    if (places.size() > most_places)
-        return user_error(fmt::format("{} channels at once: allowed are {}", places.size(), most_places));
+    if (places.size() > max_places)
+        return user_error(fmt::format("{} channels at once: allowed are {}", places.size(), max_places));
     const std::size_t width = parts()[part].width, row_bytes = widest_of(places) * places.size() * width;
     const std::uint32_t unit = row_unit(part);
     const std::size_t fitting = std::max<std::size_t>(usual_memory / row_bytes / unit * unit, unit);
@@ -182,8 +182,8 @@ Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t 
     }
     const DecoderPool& pool = DecoderPool::shared();
     const std::uint64_t decoded = decoded_size();
-    request.most_seconds = pool.seconds + static_cast<std::uint32_t>(decoded / bytes_of_a_second);
-    process.limit_wait(request.most_seconds + 1);
+    request.max_seconds = pool.seconds + static_cast<std::uint32_t>(decoded / bytes_of_a_second);
+    process.limit_wait(request.max_seconds + 1);
     process.limit_memory(pool.memory_at_rest + 2 * file_.size() + pool.memory_of_a_byte * decoded + size);
 
     std::vector<DecodePlace> wanted;
@@ -193,7 +193,7 @@ Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t 
     bool is_answered = process.send(&request, sizeof request, descriptors) &&
                        process.send(wanted.data(), wanted.size() * sizeof(DecodePlace)) &&
                        process.receive(&reply, sizeof reply) && reply.outcome <= DecodeOutcome::NeedsOpenImageIo &&
-                       reply.size <= (reply.outcome == DecodeOutcome::Error ? most_error_bytes : most_reply_bytes);
+                       reply.size <= (reply.outcome == DecodeOutcome::Error ? max_error_bytes : max_reply_bytes);
     if (is_answered) {
         answer.resize(reply.size);
         is_answered = process.receive(answer.data(), answer.size());

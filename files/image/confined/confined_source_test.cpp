@@ -150,10 +150,10 @@ class ImageConfinedData : public WithData {};
 
 TEST_F(ImageConfinedData, EveryPictureIsTheSame) {
     std::size_t count = 0;
-    const std::uintmax_t most_bytes = test::is_small() ? 1'000'000 : 8'000'000;
+    const std::uintmax_t max_bytes = test::is_small() ? 1'000'000 : 8'000'000;
     for (const char* const folder : {"composite", "env", "exr", "flip", "hud", "lut", "models", "noise"})
         for (const auto& entry : std::filesystem::recursive_directory_iterator(data_ / folder)) {
-            if (!entry.is_regular_file() || entry.file_size() > most_bytes) continue;
+            if (!entry.is_regular_file() || entry.file_size() > max_bytes) continue;
             const auto bytes = read_file(entry.path());
             if (!bytes || !kind_of_file(*bytes) || !open_source(*bytes)) continue;
             expect_same(entry.path());

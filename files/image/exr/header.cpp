@@ -13,8 +13,8 @@ namespace {
 
 // A decoder keeps each attribute of each part under its name, several times over: 2 kB and 10 us for one of no bytes.
 // Strings of a list count as attributes.
-constexpr std::size_t most_attributes = 65536;
-constexpr std::size_t most_attribute_bytes = std::size_t{32} << 20;
+constexpr std::size_t max_attributes = 65536;
+constexpr std::size_t max_attribute_bytes = std::size_t{32} << 20;
 
 // The library reads what a type needs, whatever size stands before it, and takes what follows for the next attribute: a
 // name, or a size to allocate. What it checks itself, or ends with its size, is not here; lists of channels are below.
@@ -115,9 +115,9 @@ Result<> count_attribute(std::string_view type, std::span<const std::byte> value
     count.bytes += value.size();
     if (type == "stringvector")
         for (Reader reader(value); reader.left() > 0; ++count.number) reader.block(reader.number<std::int32_t>());
-    if (count.number > most_attributes) return malformed(fmt::format("more than {} attributes", most_attributes));
-    if (count.bytes > most_attribute_bytes)
-        return malformed(fmt::format("attributes of more than {} bytes", most_attribute_bytes));
+    if (count.number > max_attributes) return malformed(fmt::format("more than {} attributes", max_attributes));
+    if (count.bytes > max_attribute_bytes)
+        return malformed(fmt::format("attributes of more than {} bytes", max_attribute_bytes));
     return {};
 }
 

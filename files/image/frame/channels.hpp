@@ -18,7 +18,7 @@
 namespace darkroom {
 
 /// Samples of an image that is read: 4 GiB, what a picture of four channels may have.
-inline constexpr std::uint64_t most_samples = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t max_samples = std::uint64_t{1} << 30;
 
 /// Channels of one part, by their index there; -1: none. Colour: red, green, blue, alpha. Depth: the first only.
 struct ChannelSet {

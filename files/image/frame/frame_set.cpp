@@ -44,10 +44,10 @@ Result<FrameSet::Range> FrameSet::parse_range(std::string_view text) {
     }
     if (!text.empty()) return user_error(std::string(expected));
     for (const long long number : {range.first, range.last})
-        if (std::abs(number) > most_number)
-            return user_error(fmt::format("{}: whole numbers in [-{}, {}]", expected, most_number, most_number));
-    if (range.step < 1 || range.step > most_number)
-        return user_error(fmt::format("a step of {}: [1, {}] is allowed", range.step, most_number));
+        if (std::abs(number) > max_number)
+            return user_error(fmt::format("{}: whole numbers in [-{}, {}]", expected, max_number, max_number));
+    if (range.step < 1 || range.step > max_number)
+        return user_error(fmt::format("a step of {}: [1, {}] is allowed", range.step, max_number));
     if (range.last < range.first) return user_error("the last frame is before the first");
     return range;
 }
@@ -59,7 +59,7 @@ Result<FrameSet> FrameSet::parse(std::string_view text) {
         const Result<Range> range = parse_range(text.substr(0, comma));
         if (!range) return failure(range.error());
         out.ranges_.push_back(*range);
-        if (out.ranges_.size() > most_ranges) return user_error(fmt::format("at most {} ranges", most_ranges));
+        if (out.ranges_.size() > max_ranges) return user_error(fmt::format("at most {} ranges", max_ranges));
         if (comma == std::string_view::npos) return out;
         text.remove_prefix(comma + 1);
     }

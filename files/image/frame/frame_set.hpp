@@ -12,9 +12,9 @@ namespace darkroom {
 
 class FrameSet {
   public:
-    static constexpr long long most_number = 1'000'000'000;
+    static constexpr long long max_number = 1'000'000'000;
     /// Lists of more ranges than this are refused.
-    static constexpr std::size_t most_ranges = 10'000;
+    static constexpr std::size_t max_ranges = 10'000;
 
     /// Errors name what is expected, and not the text.
     [[nodiscard]] static Result<FrameSet> parse(std::string_view text);

@@ -90,9 +90,9 @@ class Reader {
         count_ += kept.channels.size();
         const std::uint64_t pixels = std::uint64_t{kept.window.width} * kept.window.height;
         samples_ += pixels * kept.channels.size();
-        if (samples_ > most_samples)
+        if (samples_ > max_samples)
             return user_error(fmt::format("{} layers of {}x{}: at most {} numbers can be kept", count_, layers_.width,
-                                          layers_.height, most_samples));
+                                          layers_.height, max_samples));
         for (std::size_t c = 0; c < places.size(); ++c)
             if (places[c])
                 kept.channels[*places[c]].values.resize(pixels,

@@ -137,10 +137,10 @@ Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
         return error(fmt::format("the layer {} has 32-bit integers; numbers of at most 16 bits, half or float are read",
                                  one_printable_line(layer.name)));
     const auto count = static_cast<std::uint32_t>(layer.channels.size());
-    if (std::uint64_t{part.display_width} * part.display_height > most_samples / std::max(count, 4U))
+    if (std::uint64_t{part.display_width} * part.display_height > max_samples / std::max(count, 4U))
         return error(fmt::format("the layer {} is {}x{} with {} channels, at most {} samples are allowed",
                                  one_printable_line(layer.name), part.display_width, part.display_height, count,
-                                 most_samples));
+                                 max_samples));
     LayerSamples out{.width = part.display_width, .height = part.display_height, .channels = count};
     out.values.resize(std::size_t{out.width} * out.height * count);
     const auto range = std::ranges::minmax(layer.channels);

@@ -114,7 +114,7 @@ TEST(ImageFrameSet, ReadsWhatPeopleType) {
                                     "1000000001", "99999999999999999999", "1-2x9999999999"})
         EXPECT_FALSE(FrameSet::parse(wrong)) << wrong;
     std::string many = "1";
-    for (std::size_t i = 0; i < FrameSet::most_ranges; ++i) many += ",1";
+    for (std::size_t i = 0; i < FrameSet::max_ranges; ++i) many += ",1";
     EXPECT_FALSE(FrameSet::parse(many));
 }
 

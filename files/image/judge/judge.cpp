@@ -75,7 +75,7 @@ Result<> Judge::add(long long number, const ShownCodes& truth, const ShownCodes&
             verdict_.regions[r].add(square, 3);
             if (has_before && map_before_.has(pixel, region)) verdict_.region_flicker[r].add(change, 3);
         }
-        if (map.age(pixel) < most_recovery_frames) verdict_.recovery[map.age(pixel)].add(square, 3);
+        if (map.age(pixel) < max_recovery_frames) verdict_.recovery[map.age(pixel)].add(square, 3);
     }
     verdict_.error.add(of_frame.squares, of_frame.samples);
     verdict_.frames.push_back({.number = number, .psnr = of_frame.psnr(), .flip = flip_errors->mean});

@@ -38,7 +38,7 @@ inline constexpr std::size_t judged_region_count = 4;
 [[nodiscard]] std::string_view name_of(JudgedRegion region);
 
 /// How many frames ago a pixel's surface was disoccluded, up to the last of these.
-inline constexpr std::size_t most_recovery_frames = 8;
+inline constexpr std::size_t max_recovery_frames = 8;
 
 /// Of a frame, from its layers and those of the frame before.
 class RegionMap {
@@ -46,7 +46,7 @@ class RegionMap {
     [[nodiscard]] bool has(std::size_t pixel, JudgedRegion region) const {
         return (bits_[pixel] & (1U << static_cast<unsigned>(region))) != 0;
     }
-    /// [0, most_recovery_frames]: frames since it was disoccluded; the largest: longer ago, or never.
+    /// [0, max_recovery_frames]: frames since it was disoccluded; the largest: longer ago, or never.
     [[nodiscard]] std::uint8_t age(std::size_t pixel) const { return ages_[pixel]; }
     [[nodiscard]] std::size_t size() const { return bits_.size(); }
 
@@ -95,7 +95,7 @@ struct Verdict {
     double flip_mean = 0;                                      ///< mean of the frames
     std::array<ErrorSum, judged_region_count> regions;         ///< error
     std::array<ErrorSum, judged_region_count> region_flicker;  ///< where both frames are in the region
-    std::array<ErrorSum, most_recovery_frames> recovery;       ///< error of what was disoccluded so many frames ago
+    std::array<ErrorSum, max_recovery_frames> recovery;        ///< error of what was disoccluded so many frames ago
     std::vector<FrameVerdict> frames;
 };
 

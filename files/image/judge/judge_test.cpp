@@ -124,7 +124,7 @@ TEST(ImageJudge, WhatWasHiddenIsFoundAndGrowsOlder) {
         const RegionMap map = map_of(finder, still_frame(), truth);
         EXPECT_EQ(map.has(at(6, 6), JudgedRegion::Disoccluded), age == 0);
         EXPECT_EQ(map.age(at(6, 6)), age);
-        EXPECT_EQ(map.age(at(20, 20)), most_recovery_frames);
+        EXPECT_EQ(map.age(at(20, 20)), max_recovery_frames);
         // The former colour fades by half with each frame.
         ShownCodes test = truth;
         for (std::uint32_t y = 4; y < 11; ++y)

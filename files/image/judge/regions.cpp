@@ -120,7 +120,7 @@ void RegionFinder::find_texture(const FrameFile& frame, const ShownCodes& codes,
 // only the camera moved.
 void RegionFinder::find_disoccluded(const FrameFile& frame, RegionMap& map) const {
     const Plane<1>& depth = *frame.depth;
-    std::ranges::fill(map.ages_, std::uint8_t{most_recovery_frames});
+    std::ranges::fill(map.ages_, std::uint8_t{max_recovery_frames});
     if (depth_before_.width != depth.width || depth_before_.height != depth.height) return;
     const Matrix& view = *frame.camera.world_to_camera;
     const Matrix& projection = *frame.camera.projection;
@@ -149,7 +149,7 @@ void RegionFinder::find_disoccluded(const FrameFile& frame, RegionMap& map) cons
             const auto nearest_x = static_cast<std::size_t>(std::lround(was_x)),
                        nearest_y = static_cast<std::size_t>(std::lround(was_y));
             const std::uint8_t before = ages_before_[nearest_y * depth.width + nearest_x];
-            map.ages_[pixel] = static_cast<std::uint8_t>(std::min<std::size_t>(before + 1U, most_recovery_frames));
+            map.ages_[pixel] = static_cast<std::uint8_t>(std::min<std::size_t>(before + 1U, max_recovery_frames));
         }
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t least_side = 16;
 constexpr double bins_a_pixel = 4;  // ISO 12233
 constexpr double least_step = 1e-3;
-constexpr double least_slope = 0.02, most_slope = 0.9;
+constexpr double min_slope = 0.02, max_slope = 0.9;
 
 struct Line {
     double at = 0, slope = 0;  ///< column of row 0, and columns a row
@@ -113,10 +113,10 @@ Result<EdgeSharpness> edge_sharpness(const Plane<1>& luminance) {
             fmt::format("an edge with a contrast of {:g}; {:g} and more is needed", out.contrast, least_step));
     const Line edge = edge_of(rows);
     out.angle_degrees = std::atan(edge.slope) * 180 / std::numbers::pi;
-    if (!(std::abs(edge.slope) >= least_slope && std::abs(edge.slope) <= most_slope))
+    if (!(std::abs(edge.slope) >= min_slope && std::abs(edge.slope) <= max_slope))
         return user_error(fmt::format("an edge at {:.1f} degrees against the pixels; {:.1f} to {:.1f} are needed",
-                                      std::abs(out.angle_degrees), std::atan(least_slope) * 180 / std::numbers::pi,
-                                      std::atan(most_slope) * 180 / std::numbers::pi));
+                                      std::abs(out.angle_degrees), std::atan(min_slope) * 180 / std::numbers::pi,
+                                      std::atan(max_slope) * 180 / std::numbers::pi));
     const std::vector<double> line = line_spread(spread_function(rows, edge));
     const double whole = transfer(line, 0);
     // The difference of neighbours but one is itself a filter, whose transfer is known.

@@ -55,7 +55,7 @@ Result<> ResourceFiles::put(LookEntry& entry, std::string_view parameter, const 
 Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::filesystem::path& path, FileUse use) {
     if (const auto found = loaded_.find({path, use}); found != loaded_.end()) return found->second;
     // The first that is too much is told; those behind it are not read.
-    if (numbers_ > options_.most_resource_numbers)
+    if (numbers_ > options_.max_resource_numbers)
         return user_error(
             fmt::format("{}: is not read: the look's other tables and pictures hold as many numbers as are allowed",
                         printable(path.string())));
@@ -72,10 +72,10 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
     Result<ResourceData> data = read();
     if (!data) return failure(std::move(data));
     numbers_ += count_of(*data);
-    if (numbers_ > options_.most_resource_numbers)
+    if (numbers_ > options_.max_resource_numbers)
         return user_error(
             fmt::format("{}: with it, the look's tables and pictures hold {} numbers, at most {} are allowed",
-                        printable(path.string()), numbers_, options_.most_resource_numbers));
+                        printable(path.string()), numbers_, options_.max_resource_numbers));
     return loaded_[{path, use}] = std::make_shared<const ResourceData>(std::move(*data));
 }
 

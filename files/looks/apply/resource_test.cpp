@@ -151,8 +151,8 @@ TEST_F(LookResources, ErrorsNameTheLookTheFileAndItsLine) {
     EXPECT_TRUE(missing.starts_with(look + ":3:7: lut = \"none.cube\": ")) << missing;
     EXPECT_EQ(error_of("[post_process]\nlut = 3\n"),
               look + ":2:7: lut = 3: expected the name of a file, empty for none");
-    EXPECT_EQ(error_of(stack_of_two, {.most_resource_numbers = 5}).substr(0, look.size()), look);
-    EXPECT_EQ(error_of(stack_of_two, {.most_resource_numbers = 6}), "accepted") << "each file counts once";
+    EXPECT_EQ(error_of(stack_of_two, {.max_resource_numbers = 5}).substr(0, look.size()), look);
+    EXPECT_EQ(error_of(stack_of_two, {.max_resource_numbers = 6}), "accepted") << "each file counts once";
 }
 
 TEST_F(LookResources, BehindWhatIsTooMuchNothingIsRead) {
@@ -164,7 +164,7 @@ TEST_F(LookResources, BehindWhatIsTooMuchNothingIsRead) {
                             ++reads;
                             return ResourceData(ColorTable{.shaper_size = 2, .shaper = {0, 0, 0, 1, 1, 1}});
                         },
-                        .most_resource_numbers = 12});
+                        .max_resource_numbers = 12});
     EXPECT_EQ(reads, 3) << error;
     EXPECT_NE(error.find("2.cube: with it, the look's tables and pictures hold 18 numbers, at most 12 are allowed"),
               std::string::npos)

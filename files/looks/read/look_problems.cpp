@@ -26,7 +26,7 @@ class Checker {
     }
 
   private:
-    static constexpr std::size_t most_suggestions = 256;  // looking for names is slow
+    static constexpr std::size_t max_suggestions = 256;  // looking for names is slow
 
     void report(std::size_t entry, std::string_view key, std::string text) {
         out_.push_back({entry, key, std::move(text)});
@@ -87,7 +87,7 @@ class Checker {
         if (found == makers.end())
             return report(index, wire.key,
                           fmt::format("{} = \"{}\" of {}: no entry has this output{}", wire.key, name, shown_(index),
-                                      out_.size() < most_suggestions ? alternatives(name, known, "known are") : ""));
+                                      out_.size() < max_suggestions ? alternatives(name, known, "known are") : ""));
         if (found->second < index || is_previous) return;
         report(index, wire.key,
                fmt::format("{} = \"{}\" of {}: made only later, by {}", wire.key, name, shown_(index),

@@ -47,7 +47,7 @@ class LookReader {
                         const std::function<std::string(const std::string&)>& allowed, const std::string& meant = {});
 
   private:
-    static constexpr std::size_t most_suggestions = 256;
+    static constexpr std::size_t max_suggestions = 256;
 
     struct Problem {
         toml::source_position place;

@@ -113,7 +113,7 @@ void LookReader::report_unknown(const toml::key& key, const toml::node& node, st
                                 const std::string& meant) {
     std::string text = fmt::format("unknown key '{}' = {}", printable(key.str()), show(node));
     // Looking for names is slow, and no more problems than these are shown.
-    const bool is_sought = meant.empty() && problems_.size() < most_suggestions;
+    const bool is_sought = meant.empty() && problems_.size() < max_suggestions;
     const std::string near = is_sought ? nearest(key.str(), known) : meant;
     if (!near.empty()) text += fmt::format(", did you mean '{}', which takes {}?", near, allowed(near));
     report(key.source().begin, Weight::Slip, std::move(text));
@@ -168,7 +168,7 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
 }
 
 Result<std::string> read_look_text(const std::filesystem::path& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_toml_bytes});
     if (!bytes) return failure(bytes.error());
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }

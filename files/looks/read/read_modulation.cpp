@@ -35,8 +35,8 @@ class ModulationReader {
     ModulationReader(LookReader& reader, Look& look) : reader_(reader), look_(look), names_(entry_names(look)) {}
 
     void read(const toml::table& file) {
-        for_each(file, "pulse", most_pulses, [&](const toml::table& table) { read_pulse(table); });
-        for_each(file, "layer", most_layers, [&](const toml::table& table) { read_layer(table); });
+        for_each(file, "pulse", max_pulses, [&](const toml::table& table) { read_pulse(table); });
+        for_each(file, "layer", max_layers, [&](const toml::table& table) { read_layer(table); });
     }
 
   private:
@@ -138,7 +138,7 @@ class ModulationReader {
         }
         constexpr std::array kinds{Kind::Float, Kind::Vec2, Kind::Vec3, Kind::Vec4};
         const bool is_one = node->is_number();
-        ParamInfo row{.name = "amount", .range = {-most_amount, most_amount}, .kind = kinds[is_one ? 0 : count - 1]};
+        ParamInfo row{.name = "amount", .range = {-max_amount, max_amount}, .kind = kinds[is_one ? 0 : count - 1]};
         row.words = is_one ? 1 : count;
         std::array<std::uint32_t, 4> words{};
         if (!reader_.take(row, words, *node, "amount")) return false;

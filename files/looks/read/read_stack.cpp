@@ -17,7 +17,7 @@ namespace darkroom {
 namespace {
 
 /// The work of a plan grows with the square of them.
-constexpr std::size_t most_entries = 4096;
+constexpr std::size_t max_entries = 4096;
 
 class StackReader {
   public:
@@ -166,10 +166,10 @@ class StackReader {
 
 Look read_stack(LookReader& reader, const toml::node& node) {
     const toml::array* const array = node.as_array();
-    if (array != nullptr && array->size() <= most_entries) return StackReader(reader).read(*array);
+    if (array != nullptr && array->size() <= max_entries) return StackReader(reader).read(*array);
     reader.report(node, Weight::Wrong,
                   array == nullptr ? fmt::format("stack = {}: expected [[stack]] entries", show(node))
-                                   : fmt::format("{} entries of stack: allowed are {}", array->size(), most_entries));
+                                   : fmt::format("{} entries of stack: allowed are {}", array->size(), max_entries));
     return Look{.is_flat = false};
 }
 

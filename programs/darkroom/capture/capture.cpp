@@ -35,7 +35,7 @@ using darkroom::user_error;
 
 constexpr VkExtent2D default_extent{960, 540};
 constexpr std::uint32_t usual_samples = 64;
-constexpr std::size_t most_captured_frames = 10'000;
+constexpr std::size_t max_captured_frames = 10'000;
 
 struct Options {
     SceneFlags drawn;
@@ -43,16 +43,16 @@ struct Options {
     std::string scene, folder, frames, scales = "1,1.5,2,3", mean = "tone-mapped";
     std::optional<std::string> truth_frames;
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
-    NumberFlag samples{"--samples", {.least = 2, .most = scene::most_samples, .is_whole = true}};
+    NumberFlag samples{"--samples", {.least = 2, .most = scene::max_samples, .is_whole = true}};
 };
 
 Result<std::vector<long long>> parse_moments(const char* flag, const std::string& text) {
     const Result<darkroom::FrameSet> set = parse_frames(text);
     if (!set) return failure(set.error());
     std::vector<long long> numbers = set->numbers();
-    if (numbers.size() > most_captured_frames)
+    if (numbers.size() > max_captured_frames)
         return user_error(fmt::format("{} {}: {} frames, at most {} are allowed", flag, printable(text), numbers.size(),
-                                      most_captured_frames));
+                                      max_captured_frames));
     if (numbers.front() < 0) return user_error(fmt::format("{} {}: a scene begins at frame 0", flag, printable(text)));
     return numbers;
 }

@@ -21,17 +21,17 @@ using darkroom::user_error;
 
 namespace {
 
-constexpr std::size_t most_scales = 8;
-constexpr double most_scale = 10;
+constexpr std::size_t max_scales = 8;
+constexpr double max_scale = 10;
 /// Colour and the colour before transparency in halves, depth and motion in floats, normals and mask in halves.
 constexpr std::uint64_t bytes_a_pixel = 8 + 6 + 4 + 8 + 6 + 2;
-constexpr std::uintmax_t most_description_bytes = 1 << 20;
+constexpr std::uintmax_t max_description_bytes = 1 << 20;
 
 Json size_of(VkExtent2D extent) { return Json{extent.width, extent.height}; }
 
 darkroom::Failure bad_scales(const std::string& text) {
     return user_error(fmt::format("--scales {}: allowed are 1 to {} numbers in [1, {:g}], each once, with commas",
-                                  printable(text), most_scales, most_scale));
+                                  printable(text), max_scales, max_scale));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Result<std::vector<CaptureScale>> parse_scales(const std::string& text, VkExtent
         const std::size_t end = std::min(text.find(',', start), text.size());
         const std::optional<double> number = darkroom::parse_number(text.substr(start, end - start));
         const bool is_new = number && std::ranges::find(out, *number, &CaptureScale::scale) == out.end();
-        if (!is_new || !(*number >= 1 && *number <= most_scale) || out.size() == most_scales) return bad_scales(text);
+        if (!is_new || !(*number >= 1 && *number <= max_scale) || out.size() == max_scales) return bad_scales(text);
         CaptureScale& scale = out.emplace_back(CaptureScale{.scale = *number, .folder = fmt::format("{:g}x", *number)});
         scale.extent = scaled(extent, 1 / *number);
         scale.exact = static_cast<float>(extent.height) / static_cast<float>(scale.extent.height);
@@ -80,7 +80,7 @@ Json describe(const CaptureJob& job, std::string_view scene_file) {
 
 Result<CapturedTruth> read_capture(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / capture_description;
-    const auto bytes = darkroom::read_file(file, {.max_size = most_description_bytes});
+    const auto bytes = darkroom::read_file(file, {.max_size = max_description_bytes});
     if (!bytes) return failure(bytes.error());
     const std::optional<Json> json = Json::parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     const auto refused = [&](std::string_view what) {

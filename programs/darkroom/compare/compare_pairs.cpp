@@ -58,7 +58,7 @@ Result<Files> files_of_sequence(const std::string& input) {
     Files files;
     // In the order of their numbers, whatever their signs.
     for (const auto& [path, number] : *found)
-        files.emplace(fmt::format("{:020}", number + darkroom::FrameSet::most_number), path);
+        files.emplace(fmt::format("{:020}", number + darkroom::FrameSet::max_number), path);
     return files;
 }
 

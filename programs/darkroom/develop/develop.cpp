@@ -133,7 +133,7 @@ Result<> check_gaps(const Options& options, Job& job) {
         const std::string shown = darkroom::printable(step.input.string());
         if (missing > 0 && options.gaps == "stop")
             return user_error(fmt::format("--gaps stop: {} frames are missing {} {}", missing, where, shown));
-        constexpr auto most = static_cast<long long>(most_frames);
+        constexpr auto most = static_cast<long long>(max_frames);
         held += std::min(missing, most + 1);
         if (held <= most) return {};
         return user_error(

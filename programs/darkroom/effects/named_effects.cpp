@@ -21,7 +21,7 @@ bool is_regular(const fs::path& path) {
 
 /// Most looks and scenes name no file, and are then not parsed twice.
 bool names_file(const fs::path& path) {
-    const auto bytes = darkroom::read_file(path, {.max_size = darkroom::most_toml_bytes});
+    const auto bytes = darkroom::read_file(path, {.max_size = darkroom::max_toml_bytes});
     return bytes && std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()).find(".glsl") !=
                         std::string_view::npos;
 }

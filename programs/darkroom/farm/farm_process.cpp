@@ -25,8 +25,8 @@ using darkroom::Result;
 
 namespace {
 
-constexpr std::size_t most_output = 1 << 16;
-constexpr std::size_t most_errors = 8;
+constexpr std::size_t max_output = 1 << 16;
+constexpr std::size_t max_errors = 8;
 
 /// A pipe that the program started does not inherit but where it is told to.
 class Pipe {
@@ -64,14 +64,14 @@ struct Words {
 
 void keep(std::vector<std::string>& lines, const std::string& line) {
     lines.push_back(darkroom::printable(line));
-    if (lines.size() > most_errors) lines.erase(lines.begin());
+    if (lines.size() > max_errors) lines.erase(lines.begin());
 }
 
 /// Takes whole lines out of `text`, and one that never ends in pieces.
 void take_lines(std::string& text, bool is_end, Words& words) {
     while (!text.empty()) {
         const std::size_t end = text.find('\n');
-        if (end == std::string::npos && !is_end && text.size() < most_output) return;
+        if (end == std::string::npos && !is_end && text.size() < max_output) return;
         const std::string line = text.substr(0, end);
         text.erase(0, end == std::string::npos ? text.size() : end + 1);
         if (line.empty() || line.find("warning:") != std::string::npos) continue;
@@ -86,7 +86,7 @@ void read_all(Pipe& out, Pipe& errors, ProcessOutput output, ProcessOutcome& out
         if (::poll(waits.data(), waits.size(), -1) < 0 && errno != EINTR) break;
         if (waits[0].revents != 0) {
             if (!out.read_to(outcome.out)) out.close_end(0);
-            outcome.out.resize(std::min(outcome.out.size(), most_output));
+            outcome.out.resize(std::min(outcome.out.size(), max_output));
         }
         if (waits[1].revents != 0) {
             const std::size_t known = text.size();

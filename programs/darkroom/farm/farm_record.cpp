@@ -27,7 +27,7 @@ namespace {
 constexpr std::int64_t format = 1;
 constexpr const char* job_file = "job.json";
 // A hundred thousand frames with gaps, asked for and done, take 8 MB.
-constexpr std::size_t most_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_bytes = std::size_t{16} << 20;
 constexpr std::array<const char*, 3> state_names{"begun", "done", "failed"};
 
 using Ranges = std::vector<std::array<long long, 2>>;
@@ -72,9 +72,9 @@ FrameNumbers numbers_of(const Json& json, const char* key) {
             throw Wrong{fmt::format("{} are no pairs of frames", key)};
         const std::int64_t first = range.elements()[0].whole(), last = range.elements()[1].whole();
         const bool is_behind = out.empty() || first > *out.rbegin();
-        if (std::abs(first) > darkroom::FrameSet::most_number || last < first || !is_behind ||
-            static_cast<std::size_t>(last - first) >= most_frames - out.size())
-            throw Wrong{fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_frames)};
+        if (std::abs(first) > darkroom::FrameSet::max_number || last < first || !is_behind ||
+            static_cast<std::size_t>(last - first) >= max_frames - out.size())
+            throw Wrong{fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, max_frames)};
         for (std::int64_t number = first; number <= last; ++number) out.insert(out.end(), number);
     }
     return out;
@@ -131,7 +131,7 @@ FarmJob job_of(const Json& json) {
 
 template <typename Read>
 auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Json()))> {
-    const auto bytes = darkroom::read_file(path, {.max_size = most_bytes});
+    const auto bytes = darkroom::read_file(path, {.max_size = max_bytes});
     if (!bytes) return failure(bytes.error());
     std::string problem = "is not JSON";
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -158,9 +158,9 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
         if (entry->path().extension() == ".json" && entry->path().filename() != job_file) {
             out.push_back(entry->path());
-            if (out.size() > most_frames)
+            if (out.size() > max_frames)
                 return darkroom::user_error(fmt::format("{}: holds more than {} records, no more are allowed",
-                                                        printable(folder.string()), most_frames));
+                                                        printable(folder.string()), max_frames));
         }
     if (error)
         return darkroom::user_error(

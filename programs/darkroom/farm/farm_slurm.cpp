@@ -31,12 +31,12 @@ using darkroom::user_error;
 namespace {
 
 // Slurm's MaxArraySize is 1001 where a site says nothing else.
-constexpr std::size_t most_chunks = 1000;
+constexpr std::size_t max_chunks = 1000;
 constexpr std::size_t usual_chunk = 10;
 
 struct SlurmOptions {
     FarmFlags work;
-    NumberFlag chunk{"--chunk", {.least = 1, .most = most_frames, .is_whole = true}};
+    NumberFlag chunk{"--chunk", {.least = 1, .most = max_frames, .is_whole = true}};
     NumberFlag cpus{"--cpus", {.least = 1, .most = 4096, .is_whole = true}};
     std::string partition, time, gpus, account, program;
     bool is_dry_run = false;
@@ -188,10 +188,9 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
     if (std::ranges::any_of(chunks, [](const std::string& name) { return name.size() > longest_name; }))
         return user_error(fmt::format(
             "--chunk {}: the frames of a chunk are too scattered for a file's name; choose a smaller number", chunk));
-    if (chunks.size() > most_chunks)
+    if (chunks.size() > max_chunks)
         return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: --chunk {} is enough", chunk,
-                                      chunks.size(), most_chunks,
-                                      (work->frames.size() + most_chunks - 1) / most_chunks));
+                                      chunks.size(), max_chunks, (work->frames.size() + max_chunks - 1) / max_chunks));
     const Result<std::string> script = script_of(options, *work, chunks);
     if (!script) return failure(script.error());
     if (options.is_dry_run) {

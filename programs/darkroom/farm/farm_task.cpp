@@ -29,7 +29,7 @@ using darkroom::Result;
 
 namespace {
 
-constexpr std::int64_t most_tries = 4;  // the first, and three more
+constexpr std::int64_t max_tries = 4;  // the first, and three more
 constexpr std::chrono::seconds pause{1};
 
 std::string node_name() {
@@ -58,7 +58,7 @@ class Task {
 
     Result<int> run() {
         if (Result<> done = begin(); !done) return failure(std::move(done));
-        while (!is_done() && record_.tries < most_tries) {
+        while (!is_done() && record_.tries < max_tries) {
             if (record_.tries > 0) std::this_thread::sleep_for(pause);
             ++record_.tries;
             if (Result<> done = try_once(); !done) return failure(std::move(done));

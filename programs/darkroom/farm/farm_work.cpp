@@ -131,9 +131,9 @@ Result<FarmWork> FarmFlags::work() const {
     }
     Result<std::vector<FarmFrame>> frames = frames_in(asked_for);
     if (!frames) return failure(std::move(frames));
-    if (frames->size() > most_frames)
+    if (frames->size() > max_frames)
         return user_error(fmt::format("{}: {} frames, a farm takes at most {}; --frames A-B chooses some",
-                                      printable(input_), frames->size(), most_frames));
+                                      printable(input_), frames->size(), max_frames));
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
     const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));

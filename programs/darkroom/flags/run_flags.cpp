@@ -125,7 +125,7 @@ Result<darkroom::FrameSet> parse_frames(const std::string& text) {
     };
     Result<darkroom::FrameSet> frames = darkroom::FrameSet::parse(text);
     if (!frames) return refuse(frames.error().text);
-    if (frames->count() > most_frames) return refuse(fmt::format("at most {} frames at once", most_frames));
+    if (frames->count() > max_frames) return refuse(fmt::format("at most {} frames at once", max_frames));
     return frames;
 }
 

@@ -52,9 +52,9 @@ class WriteFlags {
     NumberFlag quality_{"--quality", {.least = 1, .most = 100, .is_whole = true}};
 };
 
-inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at once
+inline constexpr std::size_t max_frames = 100'000;  ///< that are asked for at once
 
-/// What --frames takes: see FrameSet. At most `most_frames`.
+/// What --frames takes: see FrameSet. At most `max_frames`.
 [[nodiscard]] darkroom::Result<darkroom::FrameSet> parse_frames(const std::string& text);
 
 /// --jobs, --skip-existing, --keep-going, --mkdir, --progress, --timings.

@@ -50,7 +50,7 @@ std::string samples_of(const darkroom::FilePart& part, const darkroom::FileLayer
 }
 
 /// Of those that are listed. A file of a few bytes a layer would ask for thousands each.
-constexpr std::size_t most_layers = 1024;
+constexpr std::size_t max_layers = 1024;
 
 Result<Json> layers_of(LayerFile& file) {
     const auto parts = file.decoder().parts();
@@ -62,7 +62,7 @@ Result<Json> layers_of(LayerFile& file) {
     }
     Json out = Json::array();
     for (const darkroom::FileLayer& layer :
-         file.layers().first(std::min<std::size_t>(file.layers().size(), most_layers))) {
+         file.layers().first(std::min<std::size_t>(file.layers().size(), max_layers))) {
         darkroom::SampleRange range;
         for (const std::uint32_t channel : layer.channels) range.add(ranges[layer.part][channel]);
         out.push_back({{"layer", layer.name},
@@ -91,7 +91,7 @@ Result<Json> file_of(const std::filesystem::path& path) {
     Result<Json> layers = layers_of(*file);
     if (!layers) return failure(std::move(layers));
     out["layers"] = std::move(*layers);
-    if (file->layers().size() > most_layers) out["more_layers"] = file->layers().size() - most_layers;
+    if (file->layers().size() > max_layers) out["more_layers"] = file->layers().size() - max_layers;
     return out;
 }
 

@@ -98,7 +98,7 @@ class Probe {
         const Result<std::vector<VkOffset2D>> at = places(options_, input_.extent);
         if (!at) return failure(at.error());
         if (Result<> done = make_composer(); !done) return failure(std::move(done));
-        const std::size_t most = darkroom::Prober::most_pixels(*composer_);
+        const std::size_t most = darkroom::Prober::max_pixels(*composer_);
         if (at->size() > most)
             return user_error(fmt::format("--at: {} pixels of a stack of {} entries: allowed are at most {}",
                                           at->size(), composer_->size(), most));

@@ -165,7 +165,7 @@ Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
     if (Result<> done = samples_.read_to(samples); !done) return failure(std::move(done));
     if (has_lens() && samples == 1)
         return user_error(
-            fmt::format("--samples 1: with --aperture, allowed is [2, {}]", darkroom::scene::most_samples));
+            fmt::format("--samples 1: with --aperture, allowed is [2, {}]", darkroom::scene::max_samples));
     return samples;
 }
 

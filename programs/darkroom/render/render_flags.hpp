@@ -86,7 +86,7 @@ class RenderFlags {
     NumberFlag aperture_{"--aperture", {.least = 0.5, .most = 64}};
     NumberFlag focus_{"--focus", {.least = 0.01, .most = 1e5, .unit = "m"}};
     NumberFlag sensor_height_{"--sensor-height", {.least = 1, .most = 1000, .unit = "mm"}};
-    NumberFlag samples_{"--samples", {.least = 1, .most = darkroom::scene::most_samples, .is_whole = true}};
+    NumberFlag samples_{"--samples", {.least = 1, .most = darkroom::scene::max_samples, .is_whole = true}};
 };
 
 }  // namespace app

@@ -22,7 +22,7 @@ Result<std::size_t> Motion::first_for(Composer& composer, std::size_t frame, dou
     const std::optional<double> pre_roll = ui_.pre_roll();
     if (!pre_roll) return 0;
     std::size_t first = frame;
-    while (first > 0 && frame - first <= most_frames_before) {
+    while (first > 0 && frame - first <= max_frames_before) {
         const std::optional<double> before = time_of_(first - 1);
         if (before && *before < time - *pre_roll) break;
         --first;
@@ -34,11 +34,11 @@ Result<> Motion::advance(Composer& composer, std::size_t frame, double time, con
     if (ui_.has_controllers()) {
         const Result<std::size_t> first = first_for(composer, frame, time);
         if (!first) return failure(first.error());
-        if (frame > *first && frame - *first > most_frames_before)
+        if (frame > *first && frame - *first > max_frames_before)
             return darkroom::user_error(
                 fmt::format("the controllers run in every frame, and there are {} before the first picture; allowed "
                             "are {}, and fewer run where each script states its engine.pre_roll",
-                            frame - *first, most_frames_before));
+                            frame - *first, max_frames_before));
         const bool was_silent = ui_.silence(true);
         for (std::size_t before = *first; before < frame; ++before) {
             const std::optional<double> then = time_of_(before);

@@ -15,7 +15,7 @@ namespace app {
 class Motion {
   public:
     /// At most so many frames are gone through before one that makes a picture: some ten seconds.
-    static constexpr std::size_t most_frames_before = 1'000'000;
+    static constexpr std::size_t max_frames_before = 1'000'000;
     /// The time of a frame in seconds; nothing: it cannot be read, and is left out. Asked for the sake of controllers
     /// alone.
     using TimeOf = std::function<std::optional<double>(std::size_t frame)>;

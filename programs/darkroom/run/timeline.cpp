@@ -26,7 +26,7 @@ using darkroom::user_error;
 
 namespace {
 
-constexpr std::size_t most_events = 65536;
+constexpr std::size_t max_events = 65536;
 constexpr std::string_view owner = "timeline";
 const ParamInfo time_row{.name = "time", .unit = darkroom::unit::seconds, .range = {0, 1e9}};
 const ParamInfo over_row{.name = "over", .unit = darkroom::unit::seconds, .range = {0, 1e6}};
@@ -46,8 +46,8 @@ class TimelineReader {
         const toml::node* const events = file.get("event");
         const toml::array* const array = events == nullptr ? nullptr : events->as_array();
         if (array == nullptr) return user_error(fmt::format("{}: expected [[event]] entries", shown_));
-        if (array->size() > most_events)
-            return failure(at(*array, fmt::format("{} events: allowed are {}", array->size(), most_events)));
+        if (array->size() > max_events)
+            return failure(at(*array, fmt::format("{} events: allowed are {}", array->size(), max_events)));
         for (const toml::node& node : *array) {
             const toml::table* const table = node.as_table();
             if (table == nullptr) return failure(at(node, fmt::format("an event is {}: expected a table", show(node))));
@@ -242,7 +242,7 @@ class TimelineReader {
 
 Result<Timeline> Timeline::read(const std::filesystem::path& path, Look& look) {
     const std::string shown = printable(path.string());
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(path, {.max_size = darkroom::most_toml_bytes});
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(path, {.max_size = darkroom::max_toml_bytes});
     if (!bytes) return failure(bytes.error());
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const Result<toml::table> file = darkroom::parse_toml(text, shown);

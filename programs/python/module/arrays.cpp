@@ -23,9 +23,9 @@ std::string shape_text(const py::array& array) {
 }
 
 std::string allowed_shape(const LayerRules& rules) {
-    if (rules.most_channels == 1) return "(height, width)";
-    if (rules.least_channels == rules.most_channels) return fmt::format("(height, width, {})", rules.most_channels);
-    return fmt::format("(height, width, {} or {})", rules.least_channels, rules.most_channels);
+    if (rules.max_channels == 1) return "(height, width)";
+    if (rules.min_channels == rules.max_channels) return fmt::format("(height, width, {})", rules.max_channels);
+    return fmt::format("(height, width, {} or {})", rules.min_channels, rules.max_channels);
 }
 
 const char* shorter_samples(const LayerRules& rules) {
@@ -91,10 +91,10 @@ Layer read_layer(const py::object& object, const LayerRules& rules) {
     if (bytes == 0)
         raise_user(fmt::format("{}: dtype {}: allowed is {}float32", rules.name, std::string(py::str(array.dtype())),
                                shorter_samples(rules)));
-    const bool is_flat = array.ndim() == 2 && rules.least_channels == 1;
+    const bool is_flat = array.ndim() == 2 && rules.min_channels == 1;
     py::ssize_t channels = is_flat ? 1 : 0;
     if (array.ndim() == 3) channels = array.shape(2);
-    if (channels < rules.least_channels || channels > rules.most_channels || array.shape(0) < 1 || array.shape(1) < 1)
+    if (channels < rules.min_channels || channels > rules.max_channels || array.shape(0) < 1 || array.shape(1) < 1)
         raise_user(fmt::format("{}: shape {}: allowed is {}, none of them 0", rules.name, shape_text(array),
                                allowed_shape(rules)));
     const py::ssize_t longest = std::max(array.shape(0), array.shape(1));

@@ -35,7 +35,7 @@ struct Layer {
 /// `name` is what errors call it.
 struct LayerRules {
     std::string_view name;
-    std::uint32_t least_channels = 3, most_channels = 4;
+    std::uint32_t min_channels = 3, max_channels = 4;
     bool takes_bytes = true, takes_halves = true;
 };
 

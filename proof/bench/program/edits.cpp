@@ -15,9 +15,9 @@ namespace {
 
 constexpr VkExtent2D edited_extent{320, 180};
 /// The stack stays as long as people make them: adding and removing keep the balance between these.
-constexpr std::size_t least_entries = 4, most_entries = 20;
+constexpr std::size_t min_entries = 4, max_entries = 20;
 /// That a plan is waited for.
-constexpr int most_frames = 1000;
+constexpr int max_frames = 1000;
 /// One frame at 60 Hz.
 constexpr double frame_ms = 1000.0 / 60;
 
@@ -36,7 +36,7 @@ Result<> restructure(std::mt19937& random, Look& look) {
     const std::string& other = names[below(random, names.size())];
     const std::uint32_t kind = below(random, 4);
     if (kind == 0) return edit::move_entry(look, entry, other);
-    if (names.size() >= most_entries || (kind == 1 && names.size() > least_entries))
+    if (names.size() >= max_entries || (kind == 1 && names.size() > min_entries))
         return edit::remove_entry(look, entry);
     const Result<std::string> made = kind == 2
                                          ? edit::duplicate_entry(look, entry)
@@ -137,7 +137,7 @@ Result<std::vector<Figure>> edit_figures(Device& device, std::uint32_t edits) {
     for (std::uint32_t i = 0; i < edits; ++i) {
         Result<> shown = show_frame(session, &random, times);
         // Every other edit comes while the plan of the one before is still being made.
-        for (int frame = 0; shown && i % 2 != 0 && frame < most_frames && composer.pending().is_pending; ++frame)
+        for (int frame = 0; shown && i % 2 != 0 && frame < max_frames && composer.pending().is_pending; ++frame)
             shown = show_frame(session, nullptr, times);
         if (!shown) return failure(std::move(shown));
     }

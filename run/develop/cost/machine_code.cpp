@@ -137,12 +137,12 @@ MachineCode::MachineCode(std::string_view text) {
 
 std::optional<std::uint32_t> MachineCode::trips(const Loop& loop) const {
     // Far more than a loop of literals has: 256 rounds of a body of 400 instructions.
-    constexpr std::uint32_t most_steps = 100000;
+    constexpr std::uint32_t max_steps = 100000;
     Scalars scalars;
     for (std::size_t i = 0; i < loop.begin; ++i) scalars.run(instructions_[i]);
     std::uint32_t rounds = 0;
     std::size_t at = loop.begin;
-    for (std::uint32_t step = 0; step < most_steps; ++step) {
+    for (std::uint32_t step = 0; step < max_steps; ++step) {
         const Instruction& one = instructions_[at];
         scalars.run(one);
         std::optional<bool> is_taken = one.name == "s_branch";

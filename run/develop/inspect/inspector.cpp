@@ -22,7 +22,7 @@ namespace darkroom {
 namespace {
 
 constexpr VkFormat value_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr std::uint32_t most_layers = 256;  ///< of an image, on every device
+constexpr std::uint32_t max_layers = 256;  ///< of an image, on every device
 constexpr std::uint32_t ids_of_a_stack = 4096;
 
 VkImageUsageFlags target_usage(const gpu::Context& context) {
@@ -37,22 +37,22 @@ struct Texels {
 
     [[nodiscard]] static Result<std::shared_ptr<const Texels>> create(gpu::Context& context, std::uint32_t count) {
         auto out = std::make_shared<Texels>();
-        for (std::uint32_t first = 0; first < count; first += most_layers) {
+        for (std::uint32_t first = 0; first < count; first += max_layers) {
             // An image of one layer has no views of layers.
             auto image =
                 gpu::Image::create(context, {.name = "inspected values",
                                              .format = value_format,
-                                             .array_layers = std::clamp(count - first, 2U, most_layers),
+                                             .array_layers = std::clamp(count - first, 2U, max_layers),
                                              .usage = target_usage(context) | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
             if (!image) return failure(std::move(image));
             out->images.push_back(std::move(*image));
         }
         return std::shared_ptr<const Texels>(std::move(out));
     }
-    [[nodiscard]] VkDeviceSize bytes() const { return images.size() * most_layers * sizeof(PixelValue); }
+    [[nodiscard]] VkDeviceSize bytes() const { return images.size() * max_layers * sizeof(PixelValue); }
     [[nodiscard]] ImageRef at(std::uint32_t number) const {
-        const gpu::Image& image = images[number / most_layers];
-        const std::uint32_t layer = number % most_layers;
+        const gpu::Image& image = images[number / max_layers];
+        const std::uint32_t layer = number % max_layers;
         ImageRef out = reference_to(image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
         out.view = image.layer_views[layer];
         out.array_layer = layer;
@@ -66,7 +66,7 @@ struct Texels {
     void record_copy(const gpu::Context& context, VkCommandBuffer commands, VkBuffer buffer) const {
         for (std::size_t i = 0; i < images.size(); ++i) {
             const gpu::Image& image = images[i];
-            const VkBufferImageCopy copy{.bufferOffset = i * most_layers * sizeof(PixelValue),
+            const VkBufferImageCopy copy{.bufferOffset = i * max_layers * sizeof(PixelValue),
                                          .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, image.info.array_layers},
                                          .imageExtent = {1, 1, 1}};
             gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);

@@ -77,8 +77,8 @@ Prober& Prober::operator=(Prober&&) noexcept = default;
 Prober::~Prober() = default;
 
 /// Each is a watch for every value, and all of them together another one.
-std::size_t Prober::most_pixels(const Composer& composer) {
-    const std::size_t most = most_watches / (composer.size() + 1);
+std::size_t Prober::max_pixels(const Composer& composer) {
+    const std::size_t most = max_watches / (composer.size() + 1);
     return most > 1 ? most - 1 : 0;
 }
 

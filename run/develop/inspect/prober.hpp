@@ -23,7 +23,7 @@ class Prober {
     ~Prober();
 
     /// How many can be asked about at once in such a stack.
-    [[nodiscard]] static std::size_t most_pixels(const Composer& composer);
+    [[nodiscard]] static std::size_t max_pixels(const Composer& composer);
     /// Runs one frame of the stack, and waits.
     [[nodiscard]] Result<Inspection> probe(const Composer& composer, const DevelopInput& input,
                                            std::span<const VkOffset2D> pixels);

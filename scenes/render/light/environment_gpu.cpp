@@ -88,7 +88,7 @@ Result<gpu::Image> upload(gpu::Context& context, std::span<const Picture> levels
 }  // namespace
 
 Result<GpuEnvironment> GpuEnvironment::create(gpu::Context& context, const std::optional<Picture>& skybox) {
-    constexpr std::uint32_t table_size = 64, level_count = 6, least_width = 64, most_width = 256;
+    constexpr std::uint32_t table_size = 64, level_count = 6, min_width = 64, max_width = 256;
     GpuEnvironment out;
     out.context = &context;
     Result<VkSampler> sampler = create_sampler(context);
@@ -102,7 +102,7 @@ Result<GpuEnvironment> GpuEnvironment::create(gpu::Context& context, const std::
         const bool fits = skybox->width <= most && skybox->height <= most;
         sky[0] = fits ? *skybox : resampled(*skybox, std::min(skybox->width, most), std::min(skybox->height, most));
         out.irradiance = irradiance_harmonics(*skybox);
-        mirror = prefilter(*skybox, std::clamp(std::bit_floor(skybox->width), least_width, most_width), level_count);
+        mirror = prefilter(*skybox, std::clamp(std::bit_floor(skybox->width), min_width, max_width), level_count);
         table[0] = split_sum_table(table_size);
         out.levels = level_count;
     }

@@ -84,16 +84,16 @@ struct Lights {
         };
         const auto color = [&](float w) { return vec4(number(0, 3), number(0, 3), number(0, 3), w); };
         const auto position = [&] { return vec4(random.on_sphere() * 3.0, number(2, 6)); };
-        for (std::size_t i = 0; i < most_directional_lights; ++i) {
+        for (std::size_t i = 0; i < max_directional_lights; ++i) {
             // The second has shadow map 0 and the fourth shadow map 2.
             block.directional_direction[i] = vec4(random.on_sphere(), i % 2 == 0 ? -1.0 : double(i - 1));
             block.directional_color[i] = color(0);
         }
-        for (std::size_t i = 0; i < most_point_lights; ++i) {
+        for (std::size_t i = 0; i < max_point_lights; ++i) {
             block.point_position[i] = position();
             block.point_color[i] = color(i % 2 == 0 ? -1.0F : 6 * static_cast<float>(i));
         }
-        for (std::size_t i = 0; i < most_spot_lights; ++i) {
+        for (std::size_t i = 0; i < max_spot_lights; ++i) {
             block.spot_position[i] = position();
             // Toward the middle, nearly.
             const dvec3 axis = -glm::normalize(dvec3(block.spot_position[i]) + random.on_sphere());
@@ -112,19 +112,19 @@ struct Lights {
     [[nodiscard]] dvec3 reflected(const reference::Reflectance& surface, const dvec3& position, const dvec3& n,
                                   const dvec3& v) const {
         dvec3 sum(0);
-        for (std::size_t i = 0; i < most_directional_lights; ++i) {
+        for (std::size_t i = 0; i < max_directional_lights; ++i) {
             const vec4 direction = block.directional_direction[i];
             const double visibility = direction.w < 0 ? 1 : 0.25 + direction.w * 0.1;
             sum +=
                 reference::reflected(surface, n, v, dvec3(direction)) * dvec3(block.directional_color[i]) * visibility;
         }
-        for (std::size_t i = 0; i < most_point_lights; ++i) {
+        for (std::size_t i = 0; i < max_point_lights; ++i) {
             const dvec3 to_light = dvec3(block.point_position[i]) - position;
             sum += reference::reflected(surface, n, v, glm::normalize(to_light)) * dvec3(block.point_color[i]) *
                    reference::distance_attenuation(glm::length(to_light), block.point_position[i].w) *
                    lamp_visibility(block.point_color[i].w, 6);
         }
-        for (std::size_t i = 0; i < most_spot_lights; ++i) {
+        for (std::size_t i = 0; i < max_spot_lights; ++i) {
             const dvec3 to_light = dvec3(block.spot_position[i]) - position;
             const double cosine = glm::dot(dvec3(block.spot_direction[i]), -glm::normalize(to_light));
             sum += reference::reflected(surface, n, v, glm::normalize(to_light)) * dvec3(block.spot_color[i]) *

@@ -69,7 +69,7 @@ std::vector<scene::vec2> positions_in_pixel(std::uint32_t count) {
 }
 
 Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std::uint32_t positions, bool is_weighed) {
-    DARKROOM_ASSERT(positions >= 2 && positions <= scene::most_samples);
+    DARKROOM_ASSERT(positions >= 2 && positions <= scene::max_samples);
     Accumulate out;
     out.context_ = &context;
     out.positions_ = positions;

@@ -21,7 +21,7 @@ namespace darkroom::render {
 
 class Accumulate {
   public:
-    /// `positions`: [2, scene::most_samples]. `is_weighed`: of c / (1 + max c), else of light itself.
+    /// `positions`: [2, scene::max_samples]. `is_weighed`: of c / (1 + max c), else of light itself.
     [[nodiscard]] static Result<Accumulate> create(gpu::Context& context, VkFormat color, std::uint32_t positions,
                                                    bool is_weighed);
     /// Images as large as the targets, whose colour is what it works on; nothing of both is in use by the device.

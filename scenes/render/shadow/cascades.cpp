@@ -124,8 +124,8 @@ struct Extent {
 };
 
 /// What lies outside of the scene as the light sees it is lit, or behind all that is.
-/// `least_reach`: texels before the slice in which the distance of casters counts.
-Extent fit(dvec3 center, double radius, const LightBounds& bounds, double least_reach, std::uint32_t used) {
+/// `min_reach`: texels before the slice in which the distance of casters counts.
+Extent fit(dvec3 center, double radius, const LightBounds& bounds, double min_reach, std::uint32_t used) {
     const dvec3 low = glm::max(center - radius, bounds.low), high = glm::min(center + radius, bounds.high);
     Extent out{.center = center, .half = radius};
     if (low.x < high.x && low.y < high.y) {
@@ -136,7 +136,7 @@ Extent fit(dvec3 center, double radius, const LightBounds& bounds, double least_
     }
     // What is behind everything is compared at depth 1, so that the far end may lie anywhere before the near one.
     const double texel = 2 * out.half / used;
-    out.near = std::max(std::min(bounds.high.z, center.z + radius + least_reach * texel), low.z);
+    out.near = std::max(std::min(bounds.high.z, center.z + radius + min_reach * texel), low.z);
     const double least = radius * 1e-3;
     out.far = std::min(low.z, out.near - least);
     // A little before the first surface, which must not lie at depth 0, where casters before it are.
@@ -170,13 +170,13 @@ mat4 light_matrix(const dmat3& axes, const Extent& extent) {
 
 }  // namespace
 
-std::array<float, most_cascades> practical_splits(float near_distance, float far_distance, float lambda,
-                                                  std::uint32_t count) {
+std::array<float, max_cascades> practical_splits(float near_distance, float far_distance, float lambda,
+                                                 std::uint32_t count) {
     // Orthographic cameras may start at 0 or behind themselves, where a logarithm has nothing to say.
     const double near = near_distance;
     const double far = far_distance;
     const double first = std::max(near, far * 1e-6);
-    std::array<float, most_cascades> splits{};
+    std::array<float, max_cascades> splits{};
     for (std::uint32_t i = 1; i < count; ++i) {
         const double part = static_cast<double>(i) / count;
         const double logarithmic = first * std::pow(far / first, part);
@@ -203,7 +203,7 @@ double farthest_in_view(const scene::CameraState& camera, const scene::Box& box)
 
 Cascades fit_cascades(const scene::CameraState& camera, vec3 toward_light, const CascadeDesc& desc,
                       const CascadeScene& scene) {
-    const std::uint32_t count = std::clamp(desc.count, 1U, most_cascades);
+    const std::uint32_t count = std::clamp(desc.count, 1U, max_cascades);
     const std::uint32_t resolution = std::max(desc.resolution, 1U);
     const float near = camera.near_distance;
     const float least_far = near + std::max(std::abs(near), 1.0F) * 1e-3F;
@@ -218,7 +218,7 @@ Cascades fit_cascades(const scene::CameraState& camera, vec3 toward_light, const
     const mat4 camera_to_world = glm::inverse(camera.view);
 
     Cascades cascades{.count = count, .splits = practical_splits(near, far, desc.split_lambda, count)};
-    const double soft_reach = desc.filter == ShadowFilter::Soft ? most_penumbra / sun_tangent : 0.0F;
+    const double soft_reach = desc.filter == ShadowFilter::Soft ? max_penumbra / sun_tangent : 0.0F;
     const double reach = scene.holds_casters ? std::numeric_limits<double>::infinity() : soft_reach;
     float from = near;
     for (std::uint32_t i = 0; i < count; ++i) {

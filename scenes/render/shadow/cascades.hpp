@@ -21,7 +21,7 @@ enum class ShadowFilter : std::uint32_t { Plain, Soft };
 
 /// What a penumbra grows to either side by distance, and how many texels at most; shaders/light/shadow.glsl has them
 /// too.
-inline constexpr float sun_tangent = 0.004625F, most_penumbra = 8;
+inline constexpr float sun_tangent = 0.004625F, max_penumbra = 8;
 
 struct CascadeDesc {
     std::uint32_t count = 3;          ///< [1, 4]
@@ -41,14 +41,14 @@ struct CascadeScene {
 
 struct Cascades {
     std::uint32_t count = 0;
-    std::array<scene::mat4, most_cascades> world_to_cascade{};  ///< see shaders/light/shadow_block.glsl
-    std::array<float, most_cascades> splits{};                  ///< far view distance of each
-    std::array<float, most_cascades> texel{};                   ///< world size of a texel
+    std::array<scene::mat4, max_cascades> world_to_cascade{};  ///< see shaders/light/shadow_block.glsl
+    std::array<float, max_cascades> splits{};                  ///< far view distance of each
+    std::array<float, max_cascades> texel{};                   ///< world size of a texel
 };
 
 /// Far distances of the slices; near 0.1, far 200, lambda 0.5, 3 cascades: 33.997, 74.620, 200.
-[[nodiscard]] std::array<float, most_cascades> practical_splits(float near_distance, float far_distance, float lambda,
-                                                                std::uint32_t count);
+[[nodiscard]] std::array<float, max_cascades> practical_splits(float near_distance, float far_distance, float lambda,
+                                                               std::uint32_t count);
 
 /// `toward_light`: normalised, any direction, straight up too.
 [[nodiscard]] Cascades fit_cascades(const scene::CameraState& camera, scene::vec3 toward_light, const CascadeDesc& desc,

@@ -32,8 +32,7 @@ std::vector<std::uint32_t> casting_lamps(const scene::Snapshot& snapshot) {
     for (std::uint32_t i = 0; i < snapshot.lights.size(); ++i) {
         const scene::Light& light = snapshot.lights[i].light;
         if (light.type == LightType::Directional) continue;
-        const bool is_drawn =
-            light.type == LightType::Point ? points++ < most_point_lights : spots++ < most_spot_lights;
+        const bool is_drawn = light.type == LightType::Point ? points++ < max_point_lights : spots++ < max_spot_lights;
         if (is_drawn && light.casts_shadow && light.intensity > 0) out.push_back(i);
     }
     return out;
@@ -74,7 +73,7 @@ std::uint32_t tiles_needed(const scene::Snapshot& snapshot) {
     for (const std::uint32_t place : casting_lamps(snapshot)) tiles.push_back(tiles_of(snapshot.lights[place].light));
     std::ranges::sort(tiles, std::greater());
     std::uint32_t sum = 0;
-    for (std::size_t i = 0; i < std::min<std::size_t>(tiles.size(), most_lamps_with_shadows); ++i) sum += tiles[i];
+    for (std::size_t i = 0; i < std::min<std::size_t>(tiles.size(), max_lamps_with_shadows); ++i) sum += tiles[i];
     return sum;
 }
 
@@ -89,7 +88,7 @@ LampShadows choose_lamps(const scene::Snapshot& snapshot, std::uint32_t side) {
     std::ranges::stable_sort(places, [&](std::uint32_t a, std::uint32_t b) {
         return light_at(snapshot.lights[a], camera.position) > light_at(snapshot.lights[b], camera.position);
     });
-    places.resize(std::min<std::size_t>(places.size(), most_lamps_with_shadows));
+    places.resize(std::min<std::size_t>(places.size(), max_lamps_with_shadows));
     std::ranges::sort(places);
 
     LampShadows out;

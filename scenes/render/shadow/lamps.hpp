@@ -12,7 +12,7 @@
 namespace darkroom::render {
 
 /// The budget: lamps beyond it shine without a shadow.
-inline constexpr std::uint32_t most_lamps_with_shadows = 8, most_tiles = 6 * most_lamps_with_shadows;
+inline constexpr std::uint32_t max_lamps_with_shadows = 8, max_tiles = 6 * max_lamps_with_shadows;
 /// Tiles of a row of the image; its rows follow their number.
 inline constexpr std::uint32_t tiles_a_row = 8;
 /// Texels of a tile beyond what its lamp lights, to each side: what the filter reaches and a receiver is moved by, so

@@ -130,7 +130,7 @@ TEST(RenderLampShadows, TilesAreOneASpotAndSixAPoint) {
     snapshot.lights[2].light.intensity = 0;
     EXPECT_EQ(tiles_needed(snapshot), 1U);
     for (int i = 0; i < 20; ++i) snapshot.lights.push_back(point_lamp({0, 0, -3}));
-    EXPECT_EQ(tiles_needed(snapshot), most_tiles);
+    EXPECT_EQ(tiles_needed(snapshot), max_tiles);
     EXPECT_EQ(tile_side(2048), 512U);
     EXPECT_EQ(tile_side(16), 64U);
     EXPECT_EQ(tile_side(16384), 1024U);
@@ -146,7 +146,7 @@ TEST(RenderLampShadows, TheBudgetGoesToThoseWithTheMostLightAtTheCamera) {
     std::vector<std::uint32_t> places;
     for (const LampTiles& lamp : chosen.lamps) places.push_back(lamp.light);
     EXPECT_EQ(places, (std::vector<std::uint32_t>{1, 3, 4, 5, 6, 7, 8, 9})) << "0 is weak, 2 shines behind the camera";
-    EXPECT_EQ(chosen.world_to_tile.size(), most_tiles);
+    EXPECT_EQ(chosen.world_to_tile.size(), max_tiles);
 }
 
 TEST(RenderGpuLampShadows, TheImageIsAsLargeAsTheLampsNeedAndHoldsWhatTheyReach) {

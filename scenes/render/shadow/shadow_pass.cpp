@@ -154,7 +154,7 @@ struct ShadowPass::State {
             begin_rendering(recording.commands, map.layer_views.empty() ? map.mip_views[0] : map.layer_views[cascade],
                             {desc.resolution, desc.resolution});
             set_area(recording.commands, {}, desc.resolution);
-            recording.map = light * most_cascades + cascade;
+            recording.map = light * max_cascades + cascade;
             recorded = casters.record(recording, lists[i], first_instance);
             context->vk.CmdEndRendering(recording.commands);
             first_instance += static_cast<std::uint32_t>(lists[i].order.size());
@@ -186,7 +186,7 @@ struct ShadowPass::State {
 std::vector<std::uint32_t> lights_with_shadows(const scene::Snapshot& snapshot) {
     std::vector<std::uint32_t> places;
     std::uint32_t directional = 0;
-    for (std::uint32_t i = 0; i < snapshot.lights.size() && directional < most_directional_lights; ++i) {
+    for (std::uint32_t i = 0; i < snapshot.lights.size() && directional < max_directional_lights; ++i) {
         const scene::Light& light = snapshot.lights[i].light;
         if (light.type != scene::LightType::Directional) continue;
         ++directional;
@@ -196,10 +196,10 @@ std::vector<std::uint32_t> lights_with_shadows(const scene::Snapshot& snapshot) 
 }
 
 Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayout frame_layout, GpuScene& scene,
-                                      const CascadeDesc& desc, const ShadowNeeds& most_needed) {
-    DARKROOM_ASSERT(most_needed.lights <= most_directional_lights && most_needed.tiles <= most_tiles);
-    if (desc.count < 1 || desc.count > most_cascades)
-        return user_error(fmt::format("shadow cascades: {}, [1, {}] are allowed", desc.count, most_cascades));
+                                      const CascadeDesc& desc, const ShadowNeeds& max_needs) {
+    DARKROOM_ASSERT(max_needs.lights <= max_directional_lights && max_needs.tiles <= max_tiles);
+    if (desc.count < 1 || desc.count > max_cascades)
+        return user_error(fmt::format("shadow cascades: {}, [1, {}] are allowed", desc.count, max_cascades));
     const std::uint32_t most = context.traits.max_image_dimension;
     if (desc.resolution < 1 || desc.resolution > most)
         return user_error(
@@ -211,7 +211,7 @@ Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayo
     state.context = &context;
     state.casters = Casters(context, frame_layout, scene.material_layout.handle);
     state.desc = desc;
-    state.most = most_needed;
+    state.most = max_needs;
     Result<gpu::Image> lit_map = create_lit_map(context);
     if (!lit_map) return failure(std::move(lit_map));
     state.lit_map = std::move(*lit_map);
@@ -304,7 +304,7 @@ void ShadowPass::fill(blocks::Shadows& block) const {
     for (std::uint32_t light = 0; light < casting_lights(); ++light) {
         const Cascades& cascades = state_->cascades[light];
         for (std::uint32_t i = 0; i < cascades.count; ++i) {
-            block.world_to_map[light * most_cascades + i] = cascades.world_to_cascade[i];
+            block.world_to_map[light * max_cascades + i] = cascades.world_to_cascade[i];
             block.cascade_splits[light][static_cast<int>(i)] = cascades.splits[i];
             block.cascade_texels[light][static_cast<int>(i)] = cascades.texel[i];
         }

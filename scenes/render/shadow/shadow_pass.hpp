@@ -16,10 +16,10 @@
 namespace darkroom::render {
 
 /// Places in Snapshot::lights of those that have shadow maps, in the order of the maps: directional lights among the
-/// first most_directional_lights that cast and shine.
+/// first max_directional_lights that cast and shine.
 [[nodiscard]] std::vector<std::uint32_t> lights_with_shadows(const scene::Snapshot& snapshot);
 
-/// How many directional lights, [0, 4], and how many tiles of lamps, [0, most_tiles], there will be at most: no memory
+/// How many directional lights, [0, 4], and how many tiles of lamps, [0, max_tiles], there will be at most: no memory
 /// is spent on others.
 struct ShadowNeeds {
     std::uint32_t lights = 0, tiles = 0;
@@ -30,7 +30,7 @@ class ShadowPass {
     /// Errors: a resolution that the device lacks, VkResult.
     [[nodiscard]] static Result<ShadowPass> create(gpu::Context& context, VkDescriptorSetLayout frame_layout,
                                                    GpuScene& scene, const CascadeDesc& desc,
-                                                   const ShadowNeeds& most_needed);
+                                                   const ShadowNeeds& max_needs);
 
     /// Fits the cascades and tiles of the snapshot's casting lights and lists their casters. Before the frame's buffers
     /// are filled: the instances of all lists go into the frame's instance buffer, one list after the other. Pipelines

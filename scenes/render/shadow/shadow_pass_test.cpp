@@ -308,7 +308,7 @@ TEST(RenderGpuShadow, PenumbrasAreTheSunsAndWidenWithDistance) {
 }
 
 TEST(RenderGpuShadow, AnyNumberOfCascades) {
-    for (std::uint32_t count = 1; count <= most_cascades; ++count) {
+    for (std::uint32_t count = 1; count <= max_cascades; ++count) {
         ShadowRig rig({.count = count, .resolution = 256, .far_distance = 30});
         scene::Snapshot snapshot = floor_scene(vec3(0.2F, 1, 0.1F));
         snapshot.camera = look(vec3(0, 4, 4), vec3(0, 0, -6), 60);

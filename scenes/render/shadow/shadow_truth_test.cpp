@@ -194,7 +194,7 @@ Grid face_grid(vec3 corner, vec3 along, vec3 across, vec3 normal) {
 struct Wrong {
     double share = 0;  ///< of the points that are too dark or too light, by more than rounding
     float most = 0;
-    float most_inside = 0;  ///< more than a texel from the rectangle's edges
+    float max_inside = 0;  ///< more than a texel from the rectangle's edges
 };
 
 /// No edge of light crosses the rectangle.
@@ -217,7 +217,7 @@ Wrong wrong_on_face(const scene::Snapshot& snapshot, const Grid& grid, bool is_l
                                glm::length(grid.right);
             const float above = std::min({static_cast<float>(y) + 0.5F, static_cast<float>(grid.height - y) - 0.5F}) *
                                 glm::length(grid.down);
-            if (std::min(away, above) > texel) out.most_inside = std::max(out.most_inside, error);
+            if (std::min(away, above) > texel) out.max_inside = std::max(out.max_inside, error);
         }
     out.share /= static_cast<double>(grid.width) * grid.height;
     return out;
@@ -277,17 +277,17 @@ TEST(TruthGpuShadow, FacesThatTheSunGrazesStayLitToTheirEdges) {
         const struct {
             const char* name;
             Grid grid;
-            double most_share;
+            double max_share;
         } faces[]{
             {"top", face_grid(vec3(0.4F, 1, -1), vec3(0.6F, 0, 0), vec3(0, 0, 2), up), 0},
             {"side", face_grid(vec3(0.4F, 0, 1), vec3(0.6F, 0, 0), up, vec3(0, 0, 1)), 0.01},
             {"front", face_grid(vec3(1, 0, -1), up, vec3(0, 0, 2), vec3(1, 0, 0)), 0.01},
             {"ground", face_grid(vec3(1, 0, -0.9F), vec3(0.6F, 0, 0), vec3(0, 0, 1.8F), up), 0.01},
         };
-        for (const auto& [name, grid, most_share] : faces) {
+        for (const auto& [name, grid, max_share] : faces) {
             const Wrong wrong = wrong_on_face(snapshot, grid, true);
-            EXPECT_LE(wrong.share, most_share) << name << " at " << degrees;
-            EXPECT_LE(wrong.most_inside, 0) << name << " at " << degrees;
+            EXPECT_LE(wrong.share, max_share) << name << " at " << degrees;
+            EXPECT_LE(wrong.max_inside, 0) << name << " at " << degrees;
         }
         const Grid behind = face_grid(vec3(-1.6F, 0, -0.9F), vec3(0.6F, 0, 0), vec3(0, 0, 0.9F), up);
         EXPECT_EQ(wrong_on_face(snapshot, behind, false).most, 0) << "what bias loses shows where a caster stands";

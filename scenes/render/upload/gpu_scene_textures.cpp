@@ -13,7 +13,7 @@ namespace darkroom::render {
 
 namespace {
 
-constexpr float most_anisotropy = 8;
+constexpr float max_anisotropy = 8;
 
 std::set<TextureKey> used_textures(const scene::Assets& assets) {
     std::set<TextureKey> keys;
@@ -170,7 +170,7 @@ Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, b
         .addressModeV = address_mode(wrap_v),
         .addressModeW = address_mode(wrap_u),
         .anisotropyEnable = is_anisotropic ? VK_TRUE : VK_FALSE,
-        .maxAnisotropy = is_anisotropic ? most_anisotropy : 1,
+        .maxAnisotropy = is_anisotropic ? max_anisotropy : 1,
         .maxLod = VK_LOD_CLAMP_NONE};
     VkSampler sampler = VK_NULL_HANDLE;
     Result<> made = context_->check(context_->vk.CreateSampler(context_->device, &info, context_->allocator, &sampler),

@@ -9,12 +9,12 @@ namespace darkroom::render {
 namespace {
 
 /// Beyond this much staging memory a submission is worth its wait.
-constexpr std::size_t most_staged_bytes = std::size_t{256} << 20U;
+constexpr std::size_t max_staged_bytes = std::size_t{256} << 20U;
 
 }  // namespace
 
 Result<VkBuffer> Uploader::stage(std::size_t size, std::byte*& mapped) {
-    if (staged_bytes_ > 0 && staged_bytes_ + size > most_staged_bytes)
+    if (staged_bytes_ > 0 && staged_bytes_ + size > max_staged_bytes)
         if (Result<> flushed = flush(); !flushed) return failure(std::move(flushed));
     Result<gpu::Buffer> staging = gpu::Buffer::create(*context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                                                       gpu::Memory::Kind::Upload, "staging of scene assets");

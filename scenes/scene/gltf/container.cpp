@@ -24,7 +24,7 @@ constexpr std::uint32_t json_chunk = 0x4E4F534A;
 constexpr std::uint32_t binary_chunk = 0x004E4942;
 
 // Readers of JSON and of its extensions recurse; real files nest about ten deep.
-constexpr int most_nesting = 64;
+constexpr int max_nesting = 64;
 
 std::uint32_t little_endian(std::span<const std::byte> bytes, std::size_t offset) {
     std::uint32_t value = 0;
@@ -56,7 +56,7 @@ JsonShape shape_of(std::string_view text) {
         if (c == '{' || c == '[') ++depth;
         if (c == '}' || c == ']') --depth;
         if (c == '{' || c == '[' || c == ',') ++shape.values;
-        shape.is_too_deep = shape.is_too_deep || depth > most_nesting;
+        shape.is_too_deep = shape.is_too_deep || depth > max_nesting;
     }
     return shape;
 }
@@ -64,7 +64,7 @@ JsonShape shape_of(std::string_view text) {
 Result<nlohmann::json> parse_json(std::span<const std::byte> bytes, Budget& budget) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const JsonShape shape = shape_of(text);
-    if (shape.is_too_deep) return user_error(fmt::format("JSON nested deeper than {} levels", most_nesting));
+    if (shape.is_too_deep) return user_error(fmt::format("JSON nested deeper than {} levels", max_nesting));
     if (auto taken = budget.take("the JSON", "values", shape.values, bytes_per_value); !taken)
         return failure(std::move(taken));
     try {

@@ -17,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 // The format of .glb counts in 32 bits; nothing larger is a model.
-constexpr std::size_t most_missing_bytes = std::size_t{1} << 20;
-constexpr std::size_t most_file_bytes = std::size_t{1} << 32;
+constexpr std::size_t max_missing_bytes = std::size_t{1} << 20;
+constexpr std::size_t max_file_bytes = std::size_t{1} << 32;
 
 // EXT_texture_webp: a texture may have another image for those who cannot read it.
 void choose_webp(json& textures) {
@@ -41,7 +41,7 @@ Result<Document> Document::open(const std::filesystem::path& path, Budget budget
     document.budget_ = std::move(budget);
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return user_error("not found");
-    auto file = read_bounded(path, most_file_bytes, true);
+    auto file = read_bounded(path, max_file_bytes, true);
     if (!file) return failure(std::move(file));
     document.file_ = std::move(*file);
     document.budget_.add_file(document.file_.size());
@@ -110,8 +110,8 @@ Result<> Document::load_buffers(json& root, std::span<const std::byte> binary, b
     root.erase("buffers");
     std::size_t largest = 0;
     for (const json& buffer : buffers) largest = std::max(largest, buffer["byteLength"].get<std::size_t>());
-    largest = std::min(largest, most_file_bytes);
-    zeros_.resize(std::min(largest, most_missing_bytes));
+    largest = std::min(largest, max_file_bytes);
+    zeros_.resize(std::min(largest, max_missing_bytes));
     buffers_.resize(buffers.size());
     bool is_binary_used = false;
     for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -120,8 +120,8 @@ Result<> Document::load_buffers(json& root, std::span<const std::byte> binary, b
         if (buffers[i].contains("uri")) {
             if (auto loaded = load_buffer(buffers[i], i, largest, folder); !loaded)
                 faults_.add(pointer, loaded.error().text);
-            if (budget_.file_bytes() > most_file_bytes)
-                return user_error(fmt::format("{}: the buffers have more than {} bytes", pointer, most_file_bytes));
+            if (budget_.file_bytes() > max_file_bytes)
+                return user_error(fmt::format("{}: the buffers have more than {} bytes", pointer, max_file_bytes));
             continue;
         }
         const auto size = buffers[i]["byteLength"].get<std::size_t>();
@@ -129,7 +129,7 @@ Result<> Document::load_buffers(json& root, std::span<const std::byte> binary, b
         is_binary_used = is_binary_used || i == 0;
         if (i != 0 || !has_binary) {
             // Its data were to come from elsewhere, which is allowed; without them they are zeros.
-            if (size > most_missing_bytes)
+            if (size > max_missing_bytes)
                 faults_.add(pointer, fmt::format("{}: has neither a URI nor a BIN chunk", pointer));
             else
                 faults_.warn(fmt::format("{}: has neither a URI nor a BIN chunk; it is all zeros", pointer));

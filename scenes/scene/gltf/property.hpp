@@ -59,10 +59,10 @@ struct Array {
 };
 
 /// The largest whole number: byte counts are larger than an int, but nothing is larger than this.
-inline constexpr std::uint64_t most_integer = std::uint64_t{1} << 40;
+inline constexpr std::uint64_t max_integer = std::uint64_t{1} << 40;
 
 // Where the library reads an int, a larger number would overflow.
-inline constexpr double most_int = std::numeric_limits<std::int32_t>::max();
+inline constexpr double max_int = std::numeric_limits<std::int32_t>::max();
 
 inline constexpr Property index_of(std::string_view name, std::string_view target, bool is_required = false) {
     return {.name = name, .kind = Kind::Index, .is_required = is_required, .target = target};
@@ -70,7 +70,7 @@ inline constexpr Property index_of(std::string_view name, std::string_view targe
 inline constexpr Property object_of(std::string_view name, const Definition& object, bool is_required = false) {
     return {.name = name, .kind = Kind::Object, .is_required = is_required, .object = &object};
 }
-inline constexpr Property integer(std::string_view name, double low = 0, double high = most_int,
+inline constexpr Property integer(std::string_view name, double low = 0, double high = max_int,
                                   bool is_required = false) {
     return {.name = name, .kind = Kind::Integer, .is_required = is_required, .low = low, .high = high};
 }

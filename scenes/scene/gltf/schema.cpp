@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 // Enough to see what is wrong with a file, however much of it is.
-constexpr std::size_t most_warnings = 20;
+constexpr std::size_t max_warnings = 20;
 
 std::string shown(const json& value) {
     std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
@@ -33,11 +33,11 @@ std::string shown_range(double low, double high) {
 
 // Whole numbers may be written 1.0; the parsing library wants them without the point.
 bool make_integer(json& value) {
-    if (value.is_number_unsigned()) return value.get<std::uint64_t>() <= most_integer;
-    if (value.is_number_integer()) return value.get<std::int64_t>() >= -static_cast<std::int64_t>(most_integer);
+    if (value.is_number_unsigned()) return value.get<std::uint64_t>() <= max_integer;
+    if (value.is_number_integer()) return value.get<std::int64_t>() >= -static_cast<std::int64_t>(max_integer);
     if (!value.is_number_float()) return false;
     const double number = value.get<double>();
-    if (!(std::abs(number) <= static_cast<double>(most_integer)) || number != std::floor(number)) return false;
+    if (!(std::abs(number) <= static_cast<double>(max_integer)) || number != std::floor(number)) return false;
     value = static_cast<std::int64_t>(number);
     return true;
 }
@@ -327,7 +327,7 @@ Result<> check_extensions(const json& root, Faults& faults) {
 }  // namespace
 
 void Faults::warn(std::string text) {
-    if (warnings_.size() > most_warnings || contains(text)) return;
+    if (warnings_.size() > max_warnings || contains(text)) return;
     warnings_.push_back(std::move(text));
 }
 
@@ -349,8 +349,8 @@ Result<> Faults::check(const std::string& element) {
 
 std::vector<std::string> Faults::take_warnings() {
     for (const std::string& element : order_) warn(faults_.at(element));
-    if (warnings_.size() > most_warnings) {
-        warnings_.resize(most_warnings);
+    if (warnings_.size() > max_warnings) {
+        warnings_.resize(max_warnings);
         warnings_.emplace_back("there are more faults");
     }
     return std::move(warnings_);

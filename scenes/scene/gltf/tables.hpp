@@ -36,8 +36,7 @@ inline constexpr std::array sparse_indices_table{index_of("bufferView", "bufferV
 inline constexpr Definition sparse_indices{sparse_indices_table};
 inline constexpr std::array sparse_values_table{index_of("bufferView", "bufferViews", true), integer("byteOffset")};
 inline constexpr Definition sparse_values{sparse_values_table};
-inline constexpr std::array sparse_table{integer("count", 1, most_int, true),
-                                         object_of("indices", sparse_indices, true),
+inline constexpr std::array sparse_table{integer("count", 1, max_int, true), object_of("indices", sparse_indices, true),
                                          object_of("values", sparse_values, true)};
 inline constexpr Definition sparse_definition{sparse_table};
 inline constexpr std::array accessor_table{index_of("bufferView", "bufferViews"),
@@ -124,7 +123,7 @@ inline constexpr std::array variant_table{text("name", true)};
 inline constexpr Definition variant_definition{variant_table};
 inline constexpr std::array draco_table{
     index_of("bufferView", "bufferViews", true),
-    Property{.name = "attributes", .kind = Kind::IntegerMap, .is_required = true, .low = 0, .high = most_int}};
+    Property{.name = "attributes", .kind = Kind::IntegerMap, .is_required = true, .low = 0, .high = max_int}};
 inline constexpr Definition draco_definition{draco_table};
 inline constexpr std::array primitive_extensions_table{object_of("KHR_materials_variants", mappings_definition),
                                                        object_of("KHR_draco_mesh_compression", draco_definition)};
@@ -179,7 +178,7 @@ inline constexpr std::array node_table{text("name"),
 
 inline constexpr std::array target_table{index_of("node", "nodes"), text("path", true)};
 inline constexpr Definition target_definition{target_table};
-inline constexpr std::array channel_table{integer("sampler", 0, most_int, true),
+inline constexpr std::array channel_table{integer("sampler", 0, max_int, true),
                                           object_of("target", target_definition, true)};
 inline constexpr Definition channel_definition{channel_table};
 inline constexpr std::array animation_sampler_table{index_of("input", "accessors", true), text("interpolation"),

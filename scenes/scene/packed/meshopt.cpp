@@ -20,7 +20,7 @@ constexpr auto filters =
                                                                {"QUATERNION", MeshoptFilter::Quaternion},
                                                                {"EXPONENTIAL", MeshoptFilter::Exponential}});
 
-constexpr std::uint64_t most_stride = 256;
+constexpr std::uint64_t max_stride = 256;
 
 template <class T, std::size_t size>
 Result<T> named(const std::array<std::pair<std::string_view, T>, size>& known, const std::string& name,
@@ -57,7 +57,7 @@ Result<> check_meshopt(const MeshoptDesc& desc) {
     };
     const bool is_indices = desc.mode != MeshoptMode::Attributes;
     if (is_indices && desc.stride != 2 && desc.stride != 4) return wrong_stride("2 or 4 for indices");
-    if (!is_indices && (desc.stride == 0 || desc.stride % 4 != 0 || desc.stride > most_stride))
+    if (!is_indices && (desc.stride == 0 || desc.stride % 4 != 0 || desc.stride > max_stride))
         return wrong_stride("a multiple of 4 up to 256");
     if (desc.mode == MeshoptMode::Triangles && desc.count % 3 != 0)
         return user_error(fmt::format("count: {}, a multiple of 3 is needed for TRIANGLES", desc.count));

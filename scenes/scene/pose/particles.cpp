@@ -56,7 +56,7 @@ class History {
           cycle_(std::max(0.0, static_cast<double>(emitter.duration))),
           shortest_life_(std::max(0.0F, std::min(emitter.lifetime_min, emitter.lifetime_max))),
           longest_life_(std::max({0.0F, emitter.lifetime_min, emitter.lifetime_max})),
-          most_alive_(std::min(emitter.max_particles, most_particles)),
+          max_alive_(std::min(emitter.max_particles, max_particles)),
           is_repeating_(emitter.is_looping && cycle_ > 0),
           end_(cycle_ > 0 && !emitter.is_looping ? std::min(time, cycle_) : time) {}
 
@@ -67,7 +67,7 @@ class History {
         next_burst_ = is_repeating_ ? std::ceil(start / cycle_) : 0;
         const bool has_first_burst = start <= 0 || is_repeating_;
         // The bound is reached only where events are too close together for a double to tell apart.
-        for (; events_ < 2 * most_births; ++events_) {
+        for (; events_ < 2 * max_births; ++events_) {
             const double steady = rate_ > 0 ? next_steady_ / rate_ : never;
             const double burst = emitter_.burst_count > 0 && has_first_burst ? burst_time() : never;
             const double now = std::min(steady, burst);
@@ -87,17 +87,17 @@ class History {
     static constexpr double never = std::numeric_limits<double>::infinity();
     /// Births that are looked at for one picture, where what was skipped before bears on what is alive now. It is
     /// about 10 ms of work; an emitter that has seen more starts its history anew.
-    static constexpr std::uint32_t most_births = 262144;
+    static constexpr std::uint32_t max_births = 262144;
 
     [[nodiscard]] double first_time() const {
         const double bursts = is_repeating_ ? std::floor(longest_life_ / cycle_) + 1 : 1;
         const double wanted = rate_ * longest_life_ + 1 + bursts * emitter_.burst_count;
         // No birth was ever skipped, so those that died already do not matter. The margin is for rounding.
-        if (wanted + 1 <= most_alive_) return std::max(0.0, time_ - longest_life_ - 1e-6 * (1 + time_));
-        // Within the shortest life nobody dies, so no more than `most_alive_` are born.
-        const double offered = rate_ + (is_repeating_ ? most_alive_ / cycle_ : 0);
-        const double accepted = shortest_life_ > 0 ? std::min(offered, most_alive_ / shortest_life_) : offered;
-        const double stretch = (most_births - most_alive_) * 0.5 / std::clamp(accepted, 1e-9, 1e12);
+        if (wanted + 1 <= max_alive_) return std::max(0.0, time_ - longest_life_ - 1e-6 * (1 + time_));
+        // Within the shortest life nobody dies, so no more than `max_alive_` are born.
+        const double offered = rate_ + (is_repeating_ ? max_alive_ / cycle_ : 0);
+        const double accepted = shortest_life_ > 0 ? std::min(offered, max_alive_ / shortest_life_) : offered;
+        const double stretch = (max_births - max_alive_) * 0.5 / std::clamp(accepted, 1e-9, 1e12);
         return std::max(0.0, (std::floor(end_ / stretch) - 1) * stretch);
     }
 
@@ -106,7 +106,7 @@ class History {
         return is_repeating_ ? next_burst_ * cycle_ : never;
     }
 
-    [[nodiscard]] bool is_full() const { return deaths_.size() >= most_alive_; }
+    [[nodiscard]] bool is_full() const { return deaths_.size() >= max_alive_; }
 
     /// Nothing is born before the first death; at least one birth is passed over, whatever rounding says.
     void skip_to(double death, bool is_burst_next) {
@@ -117,7 +117,7 @@ class History {
 
     void bear_burst(double time) {
         const double first = next_burst_++ * emitter_.burst_count;
-        const std::uint32_t count = std::min(emitter_.burst_count, most_alive_);
+        const std::uint32_t count = std::min(emitter_.burst_count, max_alive_);
         for (std::uint32_t i = 0; i < count && !is_full(); ++i) bear(time, Stream::Burst, first + i);
     }
 
@@ -133,7 +133,7 @@ class History {
     const ParticleEmitter& emitter_;
     std::uint64_t seed_;
     double time_, rate_, cycle_, shortest_life_, longest_life_;
-    std::uint32_t most_alive_;
+    std::uint32_t max_alive_;
     bool is_repeating_;
     double end_;  // of emission
     double next_steady_ = 1, next_burst_ = 0;

@@ -18,7 +18,7 @@ namespace darkroom::scene {
 using EmitterPath = std::function<mat4(double time)>;
 
 /// Of one emitter, whatever its file says.
-inline constexpr std::uint32_t most_particles = 10000;
+inline constexpr std::uint32_t max_particles = 10000;
 
 /// `previous_time` gives Particle::previous_position of those that were alive then; others did not move.
 [[nodiscard]] std::vector<Particle> particles(const ParticleEmitter& emitter, const EmitterPath& path,

@@ -100,13 +100,13 @@ std::vector<float> weights_at_rest(const Model& model, const Node& node) {
     return weights;
 }
 
-std::size_t least_width(AnimatedProperty property) {
+std::size_t min_width(AnimatedProperty property) {
     if (property == AnimatedProperty::Weights) return 0;
     return property == AnimatedProperty::Rotation ? 4 : 3;
 }
 
 void apply(const AnimationChannel& channel, double time, Transform& transform, std::vector<float>& weights) {
-    if (channel.width < least_width(channel.property) || !Sampler::is_complete(channel)) return;
+    if (channel.width < min_width(channel.property) || !Sampler::is_complete(channel)) return;
     const Sampler sampler(channel, time);
     switch (channel.property) {
         case AnimatedProperty::Translation:

@@ -93,12 +93,12 @@ std::vector<std::uint64_t> depths(const Scene& scene) {
 }
 
 std::string shown_variants(const Model& model) {
-    constexpr std::size_t most_names = 20;
+    constexpr std::size_t max_names = 20;
     if (model.variants.empty()) return "the model has no variants";
     std::string names;
-    for (std::size_t i = 0; i < std::min(model.variants.size(), most_names); ++i)
+    for (std::size_t i = 0; i < std::min(model.variants.size(), max_names); ++i)
         names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", model.variants[i]);
-    return fmt::format("allowed is {}{}", names, model.variants.size() > most_names ? ", ..." : "");
+    return fmt::format("allowed is {}{}", names, model.variants.size() > max_names ? ", ..." : "");
 }
 
 class Check {
@@ -119,7 +119,7 @@ class Check {
             if (entity.light) take("lights", 1, light_size);
             if (entity.sprite) take("sprites", 1, sprite_size);
             if (entity.emitter) {
-                const std::uint64_t particles = std::min(entity.emitter->max_particles, most_particles);
+                const std::uint64_t particles = std::min(entity.emitter->max_particles, max_particles);
                 take("particles", particles, particle_size);
                 work("emitters", 1, emitter_work);
                 work("particles with parents", particles * parents[i], parent_work);

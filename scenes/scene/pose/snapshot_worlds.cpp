@@ -113,11 +113,11 @@ std::uint32_t clip_of(const Scene& scene, std::uint32_t entity, const Model& mod
     const auto [end, fault] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
     if (fault == std::errc() && end == wanted.data() + wanted.size() && number < model.animations.size()) return number;
     if (warnings != nullptr) {
-        constexpr std::size_t most_names = 20;
+        constexpr std::size_t max_names = 20;
         std::string names;
-        for (std::size_t i = 0; i < std::min(model.animations.size(), most_names); ++i)
+        for (std::size_t i = 0; i < std::min(model.animations.size(), max_names); ++i)
             names += fmt::format(", \"{}\"", model.animations[i].name);
-        if (model.animations.size() > most_names) names += ", ...";
+        if (model.animations.size() > max_names) names += ", ...";
         warnings->push_back(fmt::format(
             "{}: entities.{}.model: animation \"{}\" is not in the model, the first is played; it has 0 to {}{}",
             place_of(scene, scene.entities[entity]), scene.entities[entity].name, wanted, model.animations.size() - 1,

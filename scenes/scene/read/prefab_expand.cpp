@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_instances = 10'000, deepest_chain = 16, longest_prefix = 256, longest_name = 1024;
+constexpr std::size_t max_instances = 10'000, deepest_chain = 16, longest_prefix = 256, longest_name = 1024;
 
 std::string qualified(std::string_view name, std::string_view prefix) {
     if (name.find(prefix_mark) != std::string_view::npos) return with_prefix(name, prefix);
@@ -86,9 +86,9 @@ void PrefabExpander::expand_level(const Level& level, const std::string* prefix)
 void PrefabExpander::add_entity(const Level& level, const toml::key& key, const toml::node& node,
                                 const std::string* prefix) {
     const Place place = place_of(key.source(), level.file);
-    if (entities_.size() == most_entities) {
+    if (entities_.size() == max_entities) {
         is_full_ = true;
-        report_.error(place, [] { return fmt::format("the scene has more than {} entities", most_entities); });
+        report_.error(place, [] { return fmt::format("the scene has more than {} entities", max_entities); });
         return;
     }
     RawEntity raw{.name = prefix == nullptr ? std::string(key.str()) : qualified(key.str(), *prefix),
@@ -156,9 +156,9 @@ std::optional<PrefabExpander::Instance> PrefabExpander::read_instance(const Leve
 void PrefabExpander::expand_instance(const Level& level, const toml::key& key, const toml::node& node,
                                      const std::string* prefix) {
     const Place place = place_of(key.source(), level.file);
-    if (++instances_ > most_instances) {
+    if (++instances_ > max_instances) {
         is_full_ = true;
-        report_.error(place, [] { return fmt::format("the scene has more than {} prefabs", most_instances); });
+        report_.error(place, [] { return fmt::format("the scene has more than {} prefabs", max_instances); });
         return;
     }
     const std::optional<Instance> instance = read_instance(level, key, node, prefix);

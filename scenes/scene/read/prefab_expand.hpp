@@ -42,7 +42,7 @@ struct Level {
 /// That of a whole file.
 [[nodiscard]] Level level_of(const toml::table& table, std::uint32_t file, std::filesystem::path folder);
 
-inline constexpr std::size_t most_entities = 100'000;
+inline constexpr std::size_t max_entities = 100'000;
 
 /// Files of prefabs, kept since the trees point into them.
 struct LoadedFile {

@@ -35,7 +35,7 @@ constexpr std::array shape_names{std::pair{std::string_view("point"), EmitterSha
 constexpr Interval scales{.low = -1e6, .high = 1e6};
 constexpr Interval half_angle_degrees{.low = 0, .high = 180, .unit = "degrees"};
 constexpr Interval cone_radians{.low = 0, .high = std::numbers::pi / 2, .unit = "radians"};
-constexpr std::uint32_t most_frames = 4096;
+constexpr std::uint32_t max_frames = 4096;
 
 // Intrinsic rotations about z, then y, then x: a point is turned about x first.
 quat rotation_of(vec3 degrees) {
@@ -175,8 +175,8 @@ void read_light(TableReader& table, EntityDraft& draft) {
 }
 
 void read_frames(TableReader& table, std::uint32_t& frames_x, std::uint32_t& frames_y) {
-    table.count("frames_x", frames_x, 1, most_frames);
-    table.count("frames_y", frames_y, 1, most_frames);
+    table.count("frames_x", frames_x, 1, max_frames);
+    table.count("frames_y", frames_y, 1, max_frames);
 }
 
 void read_sprite(TableReader& table, EntityDraft& draft) {
@@ -185,7 +185,7 @@ void read_sprite(TableReader& table, EntityDraft& draft) {
     table.number("width", sprite.width, positive);
     table.number("height", sprite.height, positive);
     read_frames(table, sprite.frames_x, sprite.frames_y);
-    table.count("frame", sprite.frame, 0, most_frames * most_frames);
+    table.count("frame", sprite.frame, 0, max_frames * max_frames);
     if (sprite.frame >= sprite.frames_x * sprite.frames_y) {
         table.slip("frame", fmt::format("the texture has {} x {} frames; 0 is used", sprite.frames_x, sprite.frames_y));
         sprite.frame = 0;

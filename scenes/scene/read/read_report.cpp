@@ -20,9 +20,9 @@ std::string Report::show(Place place) const {
 }
 
 std::string Report::suggestion(std::string_view wrong, std::span<const std::string> names) {
-    constexpr std::size_t most_names = 2000;
-    if (++suggestions_ > most_suggestions) return {};
-    return darkroom::suggestion(wrong, names.first(std::min(names.size(), most_names)));
+    constexpr std::size_t max_names = 2000;
+    if (++suggestions_ > max_suggestions) return {};
+    return darkroom::suggestion(wrong, names.first(std::min(names.size(), max_names)));
 }
 
 std::vector<std::string> Report::lines(Problems& problems) const {
@@ -30,7 +30,7 @@ std::vector<std::string> Report::lines(Problems& problems) const {
                      [](const Problem& a, const Problem& b) { return a.place < b.place; });
     std::vector<std::string> out;
     for (const Problem& problem : problems.kept) {
-        if (out.size() == most_shown) break;
+        if (out.size() == max_shown) break;
         out.push_back(fmt::format("{}: {}", show(problem.place), problem.text));
     }
     if (problems.count > out.size())

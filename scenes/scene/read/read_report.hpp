@@ -54,12 +54,12 @@ class Report {
         std::vector<Problem> kept;
         std::size_t count = 0;
     };
-    static constexpr std::size_t most_kept = 1000, most_shown = 20, most_suggestions = 64;
+    static constexpr std::size_t max_kept = 1000, max_shown = 20, max_suggestions = 64;
 
     template <class Text>
     void add(Problems& problems, Place place, Text&& text) {
         ++problems.count;
-        if (problems.kept.size() < most_kept) problems.kept.push_back({place, text()});
+        if (problems.kept.size() < max_kept) problems.kept.push_back({place, text()});
     }
     [[nodiscard]] std::vector<std::string> lines(Problems& problems) const;
 

@@ -85,9 +85,9 @@ void SceneReader::read_scene_table(const Value& value) {
     const Where where{.name = "scene"};
     TableReader table(reader_, value, where);
     table.text("name", scene_.name);
-    table.text("description", scene_.description, most_toml_bytes);
+    table.text("description", scene_.description, max_toml_bytes);
     table.number("time", scene_.time, {.low = 0, .high = 1e9, .unit = "s"});
-    table.count("samples", scene_.samples, 1, most_samples);
+    table.count("samples", scene_.samples, 1, max_samples);
     table.flag("grid", scene_.has_grid);
     table.flag("alpha_layer", scene_.has_alpha_layer);
     constexpr std::array skins_names{std::pair{std::string_view("all_nodes"), Skins::AllNodes},
@@ -214,12 +214,12 @@ void SceneReader::report_cycles() {
         }
         if (at == Entity::none || walk_of[at] != start) continue;
         report_.error(parents_[at].place, [&] {
-            constexpr std::size_t most_names = 20;
+            constexpr std::size_t max_names = 20;
             std::vector<std::string> chain{printable(scene_.entities[at].name)};
-            for (std::uint32_t up = scene_.entities[at].parent; up != at && chain.size() < most_names;
+            for (std::uint32_t up = scene_.entities[at].parent; up != at && chain.size() < max_names;
                  up = scene_.entities[up].parent)
                 chain.push_back(printable(scene_.entities[up].name));
-            if (chain.size() == most_names) chain.emplace_back("...");
+            if (chain.size() == max_names) chain.emplace_back("...");
             chain.push_back(chain.front());
             return fmt::format("entities.{}.parent: entities are parents of themselves: {}",
                                printable(scene_.entities[at].name), fmt::join(chain, " -> "));

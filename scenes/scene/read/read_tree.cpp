@@ -11,7 +11,7 @@ namespace darkroom::scene::reading {
 namespace {
 
 // Bounds on what prefabs multiply, and on the depth that copies and destructors of trees recurse to.
-constexpr std::size_t most_members = 1'000'000;
+constexpr std::size_t max_members = 1'000'000;
 constexpr int deepest = 8;
 
 }  // namespace
@@ -51,10 +51,10 @@ void merge(Value& base, const Value& over) {
 }
 
 std::string show(const Value& value) {
-    constexpr std::size_t most_numbers = 4;
+    constexpr std::size_t max_numbers = 4;
     if (value.node == nullptr) return "nothing";
     const toml::array* const array = value.node->as_array();
-    if (array == nullptr || array->empty() || array->size() > most_numbers) return darkroom::show(*value.node);
+    if (array == nullptr || array->empty() || array->size() > max_numbers) return darkroom::show(*value.node);
     std::vector<std::string> elements;
     for (const toml::node& element : *array) {
         if (element.is_array() || element.is_table()) return darkroom::show(*value.node);
@@ -77,8 +77,8 @@ std::string with_prefix(std::string_view text, std::string_view prefix) {
 std::string_view TreeBuilder::keep(std::string text) { return texts_.emplace_back(std::move(text)); }
 
 bool TreeBuilder::charge(std::size_t members, Place place) {
-    if (members > most_members - members_) {
-        report_.error(place, [] { return fmt::format("the scene holds more than {} values", most_members); });
+    if (members > max_members - members_) {
+        report_.error(place, [] { return fmt::format("the scene holds more than {} values", max_members); });
         return false;
     }
     members_ += members;

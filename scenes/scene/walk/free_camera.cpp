@@ -7,14 +7,14 @@ namespace darkroom::scene {
 
 namespace {
 
-constexpr float least_distance = 1e-3F, most_distance = 1e6F;
+constexpr float min_distance = 1e-3F, max_distance = 1e6F;
 constexpr float fitted_margin = 1.1F;
 
 double radians(float degrees) { return glm::radians(static_cast<double>(degrees)); }
 
 vec3 row(const mat4& matrix, int index) { return {matrix[0][index], matrix[1][index], matrix[2][index]}; }
 
-float clamped_distance(float distance) { return std::clamp(distance, least_distance, most_distance); }
+float clamped_distance(float distance) { return std::clamp(distance, min_distance, max_distance); }
 
 }  // namespace
 

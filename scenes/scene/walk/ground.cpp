@@ -58,7 +58,7 @@ Ground::Ground(const Scene& scene, const Assets& assets) {
             continue;
         }
         const Primitive& primitive = assets.models[id.model].meshes[id.mesh].primitives[id.primitive];
-        if (triangles_.size() + primitive.indices.size() / 3 > most_triangles)
+        if (triangles_.size() + primitive.indices.size() / 3 > max_triangles)
             add(box_corners(instance.bounds, mat4(1)), box_indices);
         else
             add(deform(primitive, instance.world, {}, {}), primitive.indices);
@@ -67,7 +67,7 @@ Ground::Ground(const Scene& scene, const Assets& assets) {
 }
 
 void Ground::add(const std::vector<vec3>& points, const std::vector<std::uint32_t>& indices) {
-    for (std::size_t i = 0; i + 2 < indices.size() && triangles_.size() < most_triangles; i += 3) {
+    for (std::size_t i = 0; i + 2 < indices.size() && triangles_.size() < max_triangles; i += 3) {
         const vec3 a = points[indices[i]], b = points[indices[i + 1]], c = points[indices[i + 2]];
         if (!is_finite(a) || !is_finite(b) || !is_finite(c) || glm::cross(b - a, c - a) == vec3(0)) continue;
         triangles_.push_back({a, b - a, c - a});
@@ -96,7 +96,7 @@ void Ground::link() {
     for (side_ = 256; side_ > 1; side_ /= 2) {
         std::size_t count = 0;
         for (const Triangle& triangle : triangles_) count += cells_of(bounds_of(triangle)).count();
-        if (count <= most_links) break;
+        if (count <= max_links) break;
     }
     const auto for_each_link = [&](auto&& act) {
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {

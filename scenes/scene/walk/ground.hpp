@@ -20,7 +20,7 @@ struct RayHit {
 class Ground {
   public:
     /// Of them it holds no more, which is 52 MiB: a mesh that has no room is its box, and one beyond that is not there.
-    static constexpr std::size_t most_triangles = std::size_t{1} << 20, most_links = std::size_t{1} << 22;
+    static constexpr std::size_t max_triangles = std::size_t{1} << 20, max_links = std::size_t{1} << 22;
 
     Ground() = default;
     Ground(const Scene& scene, const Assets& assets);

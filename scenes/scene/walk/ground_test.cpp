@@ -92,7 +92,7 @@ TEST(SceneGround, OnlyWhatStandsStillIsSolid) {
 TEST(SceneGround, AMeshBeyondTheBudgetIsItsBox) {
     Primitive huge;
     huge.vertices = {{.position = {0, 0, 0}}, {.position = {0, 0, 4}}, {.position = {4, 2, 0}}};
-    for (std::size_t i = 0; i <= Ground::most_triangles; ++i)
+    for (std::size_t i = 0; i <= Ground::max_triangles; ++i)
         for (const std::uint32_t corner : {0U, 1U, 2U}) huge.indices.push_back(corner);
     const Ground ground = ground_of_mesh(huge);
     EXPECT_EQ(ground.triangle_count(), 12U);
@@ -107,7 +107,7 @@ TEST(SceneGround, TrianglesThatLieOverEachOtherStayWithinTheBudget) {
         for (const std::uint32_t corner : {0U, 1U, 2U}) pile.indices.push_back(corner);
     const Ground ground = ground_of_mesh(pile);
     EXPECT_EQ(ground.triangle_count(), 100'000U);
-    EXPECT_LE(ground.link_count(), Ground::most_links);
+    EXPECT_LE(ground.link_count(), Ground::max_links);
     ASSERT_TRUE(ground.cast({1, 5, 1}, down, 10));
     EXPECT_FLOAT_EQ(ground.cast({1, 5, 1}, down, 10)->distance, 5);
 }

@@ -25,10 +25,10 @@ const float dark_share = 0.32, lit_share = 0.82;
 // Half of the sun's angular diameter of 0.53 degrees, as a tangent: what a penumbra grows to either side by distance; as
 // render/shadow/cascades.hpp has it.
 const float sun_tangent = 0.004625;
-const float most_reach = 8.0;                        // texels that a penumbra reaches to either side
-const float least_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
+const float max_reach = 8.0;                        // texels that a penumbra reaches to either side
+const float min_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
 // Of a lamp, whose bulb has this radius, metres: a penumbra reaches so many texels, which its tile's border has room for.
-const float bulb_radius = 0.05, most_lamp_reach = 6.0;
+const float bulb_radius = 0.05, max_lamp_reach = 6.0;
 // In a corner of a room the other wall lies before a lamp's receiver, but not as steeply as this many texels a texel beside
 // it: it casts nothing into the corner. The same is lost of what stands on a floor, next to where it stands.
 const float lamp_cone = 4.0;
@@ -143,7 +143,7 @@ Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 towar
     const vec4 clip = world_to_tile * vec4(world_position + offset * texel, 1);
     const uint tiles_a_row = uint(shadows.tile_settings.y);
     // No further than the filter needs to stay within the tile.
-    const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, most_lamp_reach + 2.0, side - most_lamp_reach - 2.0);
+    const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, max_lamp_reach + 2.0, side - max_lamp_reach - 2.0);
     return Receiver(true, 0u, 0u, place + vec2(tile % tiles_a_row, tile / tiles_a_row) * side,
                     min(clip.z / clip.w, 1.0),
                     vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0,
@@ -196,7 +196,7 @@ vec2 search_place(uint i) { return vec2(((i & 1u) * 3u) ^ (i >> 2u & 1u), ((i >>
 /// Fernando, "Percentage-Closer Soft Shadows", 2005: the mean depth of what blocks the light says how wide the penumbra
 /// is. Where it is wider than the filter of 4x4 texels, a disc of bilinear taps takes that one's place.
 float soften(Receiver receiver, float visibility) {
-    const float most = receiver.is_in_tile ? most_lamp_reach : most_reach;
+    const float most = receiver.is_in_tile ? max_lamp_reach : max_reach;
     // Nothing that casts lies before depth 0.
     const float reach = min(penumbra_of(receiver, 0.0), most);
     vec2 blocked = vec2(0.0);  // how many, and the sum of their distances
@@ -204,7 +204,7 @@ float soften(Receiver receiver, float visibility) {
     // Loops in place of branches, as below. The four corners come first: where they and the texels in the middle are dark
     // all over, what lies between is taken to be so, too.
     uint looked = 0u;
-    for (uint end = reach > least_reach ? 16u : 0u; looked < end;) {
+    for (uint end = reach > min_reach ? 16u : 0u; looked < end;) {
         const vec2 offset = (search_place(looked) - 1.5) * (reach * (2.0 / 3.0));
         const float plane = receiver.depth + min(dot(receiver.slope, offset), 0.0) - dot(abs(receiver.slope), vec2(1)) -
                             receiver.cone * length(offset);
@@ -228,7 +228,7 @@ float soften(Receiver receiver, float visibility) {
     // Walls that meet darken each other by a part of the disc.
     const float bright = receiver.is_in_tile ? mix(1.0, lit_share, narrow) : 1.0;
     const bool is_dark = blocked.x > 4.0 * float(looked) - 0.5 && visibility <= 0.0;
-    const uint taps = radius > least_reach && !is_dark ? disc_taps : 0u;
+    const uint taps = radius > min_reach && !is_dark ? disc_taps : 0u;
     float sum = 0.0;
     for (uint i = 0u; i < taps; ++i) {
         const vec2 offset = disc[i] * radius;
@@ -240,7 +240,7 @@ float soften(Receiver receiver, float visibility) {
         sum += weighed_light(receiver, depths_around(receiver, meeting), receiver.depth + rise, meeting,
                              vec2(1.0 - f.x, f.x), vec2(1.0 - f.y, f.y));
     }
-    const float share = taps > 0u ? smoothstep(least_reach, soft_reach, radius) : 0.0;
+    const float share = taps > 0u ? smoothstep(min_reach, soft_reach, radius) : 0.0;
     const float lit = clamp((sum * (1.0 / float(disc_taps)) - dark) / (bright - dark), 0.0, 1.0);
     return mix(visibility, lit, share);
 }
