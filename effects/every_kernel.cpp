@@ -85,14 +85,12 @@ Result<std::vector<NamedKernel>> every_kernel(const plan::PlannerTraits& traits,
                            .target_domain = Domain::Encoded};
     std::vector<NamedKernel> out;
     for (const NamedStack& stack : stacks(has_every_choice)) {
-        const auto program = plan::plan_program(stack.entries, desc, traits);
-        if (!program) return failure(program.error());
-        for (const plan::ProgramPass& pass : program->passes) {
+        DARKROOM_TRY_VALUE(const auto program, plan::plan_program(stack.entries, desc, traits));
+        for (const plan::ProgramPass& pass : program.passes) {
             for (const bool is_lean : {false, true}) {
-                auto spec =
-                    is_lean ? plan::lean_spec(pass, usual_shape(pass, stack.entries)) : plan::complete_spec(pass);
-                if (!spec) return failure(std::move(spec));
-                out.push_back({stack.name + ": " + pass.name, is_lean, std::move(*spec)});
+                DARKROOM_TRY_VALUE(auto spec, is_lean ? plan::lean_spec(pass, usual_shape(pass, stack.entries))
+                                                      : plan::complete_spec(pass));
+                out.push_back({stack.name + ": " + pass.name, is_lean, std::move(spec)});
             }
         }
     }

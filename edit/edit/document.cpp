@@ -38,9 +38,9 @@ LookDocument::LookDocument(Look look, LookOptions options) : options_(std::move(
 
 Result<> LookDocument::edit(std::string what, const std::function<Result<>(Look&)>& change, std::string_view merge) {
     Look next = look_;
-    if (Result<> done = change(next); !done) return done;
+    DARKROOM_TRY(change(next));
     if (is_same(next, look_)) return {};
-    if (Result<> done = check(next); !done) return done;
+    DARKROOM_TRY(check(next));
     give_ids(next);
     if (merge.empty() || merge != merge_ || undo_.empty()) remember(std::move(what));
     redo_.clear();

@@ -64,9 +64,8 @@ Result<> load_again(Look& look, const LookOptions& options) {
         if (!entry.effect_file.empty()) {
             auto found = effects.find(entry.effect_file);
             if (found == effects.end()) {
-                Result<LookEntry> made = custom_entry(options.folder / entry.effect_file);
-                if (!made) return failure(std::move(made));
-                found = effects.emplace(entry.effect_file, std::move(*made)).first;
+                DARKROOM_TRY_VALUE(LookEntry made, custom_entry(options.folder / entry.effect_file));
+                found = effects.emplace(entry.effect_file, std::move(made)).first;
             }
             entry.words = carried_over(entry, *found->second.effect);
             entry.effect = found->second.effect;
@@ -91,17 +90,16 @@ Result<> load_again(Look& look, const LookOptions& options) {
 Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookOptions options,
                                         const CameraLens& lens) {
     if (options.folder.empty()) options.folder = file.parent_path();
-    Result<std::string> text = read_look_text(file);
-    if (!text) return failure(std::move(text));
+    DARKROOM_TRY_VALUE(std::string text, read_look_text(file));
     std::vector<std::string> warnings;
     std::vector<std::string>* const told = std::exchange(options.warnings, &warnings);
-    Result<Look> look = parse_look(*text, file.string(), options, lens);
+    Result<Look> look = parse_look(text, file.string(), options, lens);
     if (told != nullptr) told->insert(told->end(), warnings.begin(), warnings.end());
     if (!look) return failure(std::move(look));
     LookDocument out(std::move(*look), std::move(options));
     out.file_ = file;
     out.lens_ = lens;
-    out.text_ = out.read_text_ = std::move(*text);
+    out.text_ = out.read_text_ = std::move(text);
     out.warnings_ = std::move(warnings);
     out.watch_files();
     return out;
@@ -124,9 +122,8 @@ Result<> LookDocument::save() {
     std::error_code error;
     // Where it is gone there is nothing of others to lose.
     if (!std::filesystem::exists(file_, error) && !error) return write(file_, true);
-    const Result<std::string> now = read_look_text(file_);
-    if (!now) return failure(now.error());
-    if (*now != text_)
+    DARKROOM_TRY_VALUE(const std::string now, read_look_text(file_));
+    if (now != text_)
         return user_error(fmt::format("{}: it has been changed by others since it was read; it is not overwritten",
                                       printable(file_.string())));
     return write(file_, true);
@@ -163,7 +160,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
     Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : write_look(look_));
     if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_, lens_));
     if (!text) return failure(text.error());
-    if (Result<> done = write_file(file, std::as_bytes(std::span(*text)), true); !done) return done;
+    DARKROOM_TRY(write_file(file, std::as_bytes(std::span(*text)), true));
     file_ = file;
     text_ = *text;
     options_ = std::move(options);
@@ -185,10 +182,9 @@ Result<std::string> LookDocument::unsaved_text() const {
 }
 
 Result<> LookDocument::take_unsaved(std::string_view text) {
-    Result<Look> now = read(text, look_);
-    if (!now) return failure(std::move(now));
+    DARKROOM_TRY_VALUE(Look now, read(text, look_));
     return edit("unsaved edits", [&](Look& look) -> Result<> {
-        look = *now;
+        look = now;
         return {};
     });
 }
@@ -204,11 +200,10 @@ Result<bool> LookDocument::reload_if_changed() {
 
 /// Entries are those of `ids_of` that they are the counterparts of.
 Result<Look> LookDocument::read(std::string_view text, const Look& ids_of) {
-    Result<Look> read = parse_look(text, file_.string(), options_, lens_);
-    if (!read) return read;
-    const std::vector<const LookEntry*> others = counterparts(*read, ids_of);
-    for (std::size_t i = 0; i < others.size(); ++i) read->entries[i].id = others[i] == nullptr ? 0 : others[i]->id;
-    give_ids(*read);
+    DARKROOM_TRY_VALUE(Look read, parse_look(text, file_.string(), options_, lens_));
+    const std::vector<const LookEntry*> others = counterparts(read, ids_of);
+    for (std::size_t i = 0; i < others.size(); ++i) read.entries[i].id = others[i] == nullptr ? 0 : others[i]->id;
+    give_ids(read);
     return read;
 }
 
@@ -231,11 +226,10 @@ void LookDocument::keep_effects(Look& look, const Look& now) const {
 Result<bool> LookDocument::reload() {
     std::string text;
     if (!file_.empty()) {
-        Result<std::string> now = read_look_text(file_);
-        if (!now) return failure(std::move(now));
+        DARKROOM_TRY_VALUE(std::string now, read_look_text(file_));
         // An editor that is about to write it: the watch will tell.
-        if (now->empty() && !text_.empty()) return false;
-        text = std::move(*now);
+        if (now.empty() && !text_.empty()) return false;
+        text = std::move(now);
     }
     warnings_.clear();
     Look saved = saved_, next = look_;
@@ -250,7 +244,7 @@ Result<bool> LookDocument::reload() {
     if (!file_.empty() && (text != text_ || !is_changed_)) {
         next = saved;
     } else {
-        if (Result<> done = load_again(next, options_); !done) return failure(std::move(done));
+        DARKROOM_TRY(load_again(next, options_));
         for (LookLayer& layer : next.layers) {
             const auto read = std::ranges::find(saved.layers, layer.name, &LookLayer::name);
             if (!layer.file.empty() && read != saved.layers.end()) layer.values = read->values;

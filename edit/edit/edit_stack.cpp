@@ -28,9 +28,8 @@ Result<std::ptrdiff_t> place_before(Look& look, std::string_view before) {
                                        [](const LookEntry& entry) { return !entry.is_of_ui; });
         return last.base() - look.entries.begin();
     }
-    const Result<LookEntry*> other = restructured(look, before);
-    if (!other) return failure(other.error());
-    return *other - look.entries.data();
+    DARKROOM_TRY_VALUE(LookEntry* const other, restructured(look, before));
+    return other - look.entries.data();
 }
 
 /// A name that no entry has, like this one.
@@ -72,37 +71,33 @@ Addition addition_of(const Look& look, const EffectInfo& effect) {
 }
 
 Result<> move_entry(Look& look, std::string_view entry, std::string_view before) {
-    Result<LookEntry*> found = restructured(look, entry);
-    if (!found) return failure(found.error());
-    const std::ptrdiff_t from = *found - look.entries.data();
-    const Result<std::ptrdiff_t> to = place_before(look, before);
-    if (!to) return failure(to.error());
+    DARKROOM_TRY_VALUE(auto* found, restructured(look, entry));
+    const std::ptrdiff_t from = found - look.entries.data();
+    DARKROOM_TRY_VALUE(const std::ptrdiff_t to, place_before(look, before));
     const auto first = look.entries.begin();
-    if (from < *to)
-        std::rotate(first + from, first + from + 1, first + *to);
+    if (from < to)
+        std::rotate(first + from, first + from + 1, first + to);
     else
-        std::rotate(first + *to, first + from, first + from + 1);
+        std::rotate(first + to, first + from, first + from + 1);
     return {};
 }
 
 Result<> remove_entry(Look& look, std::string_view entry) {
-    const Result<LookEntry*> found = entry_at(look, entry);
-    if (!found) return failure(found.error());
-    if (look.is_flat || (*found)->is_of_ui)
-        (*found)->state.enabled = false;
+    DARKROOM_TRY_VALUE(LookEntry* const found, entry_at(look, entry));
+    if (look.is_flat || found->is_of_ui)
+        (found)->state.enabled = false;
     else
-        look.entries.erase(look.entries.begin() + (*found - look.entries.data()));
+        look.entries.erase(look.entries.begin() + (found - look.entries.data()));
     return {};
 }
 
 Result<std::string> duplicate_entry(Look& look, std::string_view entry) {
-    const Result<LookEntry*> found = restructured(look, entry);
-    if (!found) return failure(found.error());
-    LookEntry copy = **found;
+    DARKROOM_TRY_VALUE(LookEntry* const found, restructured(look, entry));
+    LookEntry copy = *found;
     copy.id = made_id;
     copy.output.clear();
     if (!copy.name.empty()) copy.name = fresh_name(look, copy.name);
-    look.entries.insert(look.entries.begin() + (*found - look.entries.data()) + 1, std::move(copy));
+    look.entries.insert(look.entries.begin() + (found - look.entries.data()) + 1, std::move(copy));
     return name_of_made(look);
 }
 
@@ -128,13 +123,12 @@ Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view befo
     entry.id = made_id;
     if (before.empty()) {
         if (look.is_flat) become_stack(look);
-        if (Result<> done = place_entry(look, std::move(entry)); !done) return failure(std::move(done));
+        DARKROOM_TRY(place_entry(look, std::move(entry)));
         return name_of_made(look);
     }
-    if (Result<> shared = share_effect(look, entry); !shared) return failure(std::move(shared));
-    const Result<std::ptrdiff_t> place = place_before(look, before);
-    if (!place) return failure(place.error());
-    look.entries.insert(look.entries.begin() + *place, std::move(entry));
+    DARKROOM_TRY(share_effect(look, entry));
+    DARKROOM_TRY_VALUE(const std::ptrdiff_t place, place_before(look, before));
+    look.entries.insert(look.entries.begin() + place, std::move(entry));
     return name_of_made(look);
 }
 
@@ -153,7 +147,7 @@ Result<> take_values(Look& look, const Composer& composer) {
         entry->state.enabled = desc.enabled;
         const auto opacity = std::bit_cast<std::uint32_t>(desc.opacity);
         if (desc.opacity == entry->state.opacity) continue;
-        if (Result<> done = set_state(look, name, "opacity", {&opacity, 1}); !done) return done;
+        DARKROOM_TRY(set_state(look, name, "opacity", {&opacity, 1}));
     }
     return {};
 }

@@ -94,10 +94,10 @@ TEST_F(EditStack, AnotherLookKeepsItsFilesAndTakesTheSamePlaces) {
     LookDocument document;
     for (const char* const intensity : {"0.2", "0.3"}) {
         const Result<> done = document.edit("look", [&](Look& look) -> Result<> {
-            Result<Look> read =
-                parse_look(fmt::format("[post_process]\nbloom_intensity = {}\n{}", intensity, pulse), "a.toml");
-            if (!read) return failure(std::move(read));
-            take_look(look, std::move(*read), "/shipped/looks", "/home/art");
+            DARKROOM_TRY_VALUE(
+                Look read,
+                parse_look(fmt::format("[post_process]\nbloom_intensity = {}\n{}", intensity, pulse), "a.toml"));
+            take_look(look, std::move(read), "/shipped/looks", "/home/art");
             return {};
         });
         ASSERT_TRUE(done) << done.error().text;

@@ -29,7 +29,7 @@ Result<> set_words(Look& look, LookTarget target, Words words, const std::string
     const ParamInfo& row = *target.row;
     LookEntry& entry = *target.entry;
     if (row.kind == Kind::Resource) return user_error(fmt::format("{}: takes the name of a file", shown));
-    if (Result<> done = check_words(row, words, shown); !done) return done;
+    DARKROOM_TRY(check_words(row, words, shown));
     std::ranges::copy(words, entry.words.begin() + row.word);
     if (const std::string conflict = conflict_of(entry); !conflict.empty()) return user_error(conflict);
     if (row.is_amount && look.is_flat && !entry.is_of_ui) entry.state.enabled = std::bit_cast<float>(words[0]) != 0;
@@ -39,78 +39,70 @@ Result<> set_words(Look& look, LookTarget target, Words words, const std::string
 }  // namespace
 
 Result<> set_value(Look& look, std::string_view entry, std::string_view parameter, Words words) {
-    const Result<LookTarget> target = target_of(look, entry, parameter);
-    if (!target) return failure(target.error());
+    DARKROOM_TRY_VALUE(const LookTarget target, target_of(look, entry, parameter));
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(parameter));
-    if (target->row == nullptr || target->is_state)
+    if (target.row == nullptr || target.is_state)
         return user_error(fmt::format("{}: the effect has no such parameter", shown));
-    return set_words(look, *target, words, shown);
+    return set_words(look, target, words, shown);
 }
 
 Result<> reset_value(Look& look, std::string_view entry, std::string_view parameter) {
-    const Result<LookTarget> target = target_of(look, entry, parameter);
-    if (!target) return failure(target.error());
-    if (target->row == nullptr || target->is_state)
+    DARKROOM_TRY_VALUE(const LookTarget target, target_of(look, entry, parameter));
+    if (target.row == nullptr || target.is_state)
         return user_error(
             fmt::format("{}.{}: the effect has no such parameter", printable(entry), printable(parameter)));
-    const ParamInfo& row = *target->row;
+    const ParamInfo& row = *target.row;
     if (row.kind == Kind::Resource) return set_file(look, entry, parameter, {}, {});
-    return set_value(look, entry, parameter, target->entry->effect->parameters.defaults.subspan(row.word, row.words));
+    return set_value(look, entry, parameter, target.entry->effect->parameters.defaults.subspan(row.word, row.words));
 }
 
 Result<> reset_entry(Look& look, std::string_view entry) {
-    const Result<LookEntry*> found = entry_at(look, entry);
-    if (!found) return failure(found.error());
-    const std::span<const std::uint32_t> defaults = (*found)->effect->parameters.defaults;
-    (*found)->words.assign(defaults.begin(), defaults.end());
-    std::erase_if((*found)->resources,
-                  [&](const LookResource& one) { return (*found)->effect->parameters.find(one.parameter) != nullptr; });
+    DARKROOM_TRY_VALUE(LookEntry* const found, entry_at(look, entry));
+    const std::span<const std::uint32_t> defaults = found->effect->parameters.defaults;
+    found->words.assign(defaults.begin(), defaults.end());
+    std::erase_if(found->resources,
+                  [&](const LookResource& one) { return found->effect->parameters.find(one.parameter) != nullptr; });
     return {};
 }
 
 Result<> set_state(Look& look, std::string_view entry, std::string_view row, Words words) {
-    if (row != "enabled")
-        if (const auto found = restructured(look, entry); !found) return failure(found.error());
-    const Result<LookTarget> target = target_of(look, entry, row);
-    if (!target) return failure(target.error());
+    if (row != "enabled") DARKROOM_TRY(restructured(look, entry));
+    DARKROOM_TRY_VALUE(const LookTarget target, target_of(look, entry, row));
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(row));
-    if (!target->is_state) return user_error(fmt::format("{}: an entry has no such key", shown));
-    if (Result<> done = check_words(*target->row, words, shown); !done) return done;
-    StateWords state = state_words(target->entry->state);
-    std::ranges::copy(words, state.begin() + target->row->word);
-    target->entry->state = std::bit_cast<EntryState>(state);
+    if (!target.is_state) return user_error(fmt::format("{}: an entry has no such key", shown));
+    DARKROOM_TRY(check_words(*target.row, words, shown));
+    StateWords state = state_words(target.entry->state);
+    std::ranges::copy(words, state.begin() + target.row->word);
+    target.entry->state = std::bit_cast<EntryState>(state);
     return {};
 }
 
 Result<> set_wire(Look& look, std::string_view entry, std::string_view wire, const std::string& name,
                   const LookOptions& options) {
-    const Result<LookEntry*> found = restructured(look, entry);
-    if (!found) return failure(found.error());
+    DARKROOM_TRY_VALUE(LookEntry* const found, restructured(look, entry));
     const auto* const end = std::ranges::find(wires, wire, &WireInfo::key);
     const std::string shown = fmt::format("{}.{} = \"{}\"", printable(entry), printable(wire), printable(name));
     if (end == wires.end())
         return user_error(fmt::format("{}: allowed are name, input, source, second, mask, output", shown));
     std::string_view text = name;
-    if (end->is_reference && is_file_name(text)) return ResourceFiles(options.folder, options).put(**found, *end, name);
+    if (end->is_reference && is_file_name(text)) return ResourceFiles(options.folder, options).put(*found, *end, name);
     if (end->is_reference && text.ends_with(previous_suffix)) text.remove_suffix(previous_suffix.size());
     if (!text.empty() && !is_look_name(text))
         return user_error(fmt::format("{}: expected a name of letters, digits, '_' and '-'", shown));
-    if (end->is_reference) return ResourceFiles(options.folder, options).put(**found, *end, name);
-    (*found)->*end->member = name;
+    if (end->is_reference) return ResourceFiles(options.folder, options).put(*found, *end, name);
+    (found)->*end->member = name;
     return {};
 }
 
 Result<> set_file(Look& look, std::string_view entry, std::string_view parameter, const std::string& file,
                   const LookOptions& options) {
-    const Result<LookTarget> target = target_of(look, entry, parameter);
-    if (!target) return failure(target.error());
+    DARKROOM_TRY_VALUE(const LookTarget target, target_of(look, entry, parameter));
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(parameter));
-    if (target->row == nullptr || target->is_state || target->row->kind != Kind::Resource)
+    if (target.row == nullptr || target.is_state || target.row->kind != Kind::Resource)
         return user_error(fmt::format("{}: takes no file", shown));
-    Result<> done = ResourceFiles(options.folder, options).put(*target->entry, *target->row, file);
+    Result<> done = ResourceFiles(options.folder, options).put(*target.entry, *target.row, file);
     if (!done) return user_error(fmt::format("{}: {}", shown, done.error().text));
-    if (target->row->is_amount && look.is_flat && !target->entry->is_of_ui)
-        target->entry->state.enabled = !file.empty();
+    if (target.row->is_amount && look.is_flat && !target.entry->is_of_ui) target.entry->state.enabled = !file.empty();
     return {};
 }
 

@@ -273,9 +273,8 @@ TEST_F(DocumentHistory, LooksThatShipTakeThePlaceOfEachOtherAndAreSaved) {
         for (const fs::directory_entry& file : fs::directory_iterator(looks)) {
             if (file.path().extension() != ".toml") continue;
             const Result<> taken = document.edit("look", [&](Look& look) -> Result<> {
-                Result<Look> read = read_look(file.path());
-                if (!read) return failure(std::move(read));
-                take_look(look, std::move(*read), looks, document.options().folder);
+                DARKROOM_TRY_VALUE(Look read, read_look(file.path()));
+                take_look(look, std::move(read), looks, document.options().folder);
                 return {};
             });
             ASSERT_TRUE(taken) << name << ": " << taken.error().text;

@@ -30,9 +30,8 @@ Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkro
     out->is_attached_ = ImGui_ImplGlfw_InitForOther(window.handle(), true);
     out->scale_ = window.scale();
     darkroom::panels::apply_theme(out->scale_);
-    Result<darkroom::window::GuiPass> pass = darkroom::window::GuiPass::create(context, desc, *io.Fonts);
-    if (!pass) return failure(std::move(pass));
-    out->pass_.emplace(std::move(*pass));
+    DARKROOM_TRY_VALUE(darkroom::window::GuiPass pass, darkroom::window::GuiPass::create(context, desc, *io.Fonts));
+    out->pass_.emplace(std::move(pass));
     return out;
 }
 
@@ -55,7 +54,7 @@ Result<> Gui::begin(float scale) {
     if (scale != scale_) {
         scale_ = scale;
         darkroom::panels::apply_theme(scale);
-        if (Result<> done = pass_->upload_fonts(*ImGui::GetIO().Fonts); !done) return done;
+        DARKROOM_TRY(pass_->upload_fonts(*ImGui::GetIO().Fonts));
         damage_ = {};
     }
     ImGui_ImplGlfw_NewFrame();
@@ -90,7 +89,7 @@ Result<> Gui::draw(const darkroom::window::PresentFrame& frame) {
         parts = parts_of(frame, *lists);
     else
         damage_ = {};
-    if (Result<> done = pass_->begin(*lists, frame.slot); !done) return done;
+    DARKROOM_TRY(pass_->begin(*lists, frame.slot));
     for (const VkRect2D& part : parts) {
         const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                                    .imageView = frame.view,

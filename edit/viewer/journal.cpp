@@ -22,10 +22,9 @@ constexpr std::size_t max_bytes = std::size_t{4} << 20;
 constexpr std::string_view first_line = "# Unsaved edits of process ";
 
 Result<std::string> text_of(const std::filesystem::path& file) {
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = max_bytes});
-    if (!bytes) return darkroom::failure(bytes.error());
-    const void* const data = bytes->data();
-    return std::string(static_cast<const char*>(data), bytes->size());
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, darkroom::read_file(file, {.max_size = max_bytes}));
+    const void* const data = bytes.data();
+    return std::string(static_cast<const char*>(data), bytes.size());
 }
 
 /// One that has ended, and that nobody has asked for its end yet, is not at work any more.

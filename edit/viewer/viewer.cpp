@@ -42,7 +42,7 @@ Viewer::~Viewer() {
 int Viewer::exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
 
 Result<> Viewer::run() {
-    if (Result<> done = open(); !done) return done;
+    DARKROOM_TRY(open());
     while (!is_leaving_) {
         Result<> done = turn();
         if (!done && is_device_lost(done.error())) done = make_anew(done.error());
@@ -50,7 +50,7 @@ Result<> Viewer::run() {
         if (window_->is_closing()) leave();
         if (is_fixed() && shown_frames_ >= *job_.frames_to_show) break;
     }
-    if (Result<> done = presenter_->wait(); !done) return done;
+    DARKROOM_TRY(presenter_->wait());
     write_config();
     if (journal_) journal_->end();
     finish_stores(true);
@@ -58,10 +58,9 @@ Result<> Viewer::run() {
 }
 
 Result<> Viewer::open() {
-    Result<darkroom::window::Window> window = darkroom::window::Window::create(job_.window);
-    if (!window) return failure(std::move(window));
-    window_.emplace(std::move(*window));
-    if (Result<> done = open_device(); !done) return done;
+    DARKROOM_TRY_VALUE(darkroom::window::Window window, darkroom::window::Window::create(job_.window));
+    window_.emplace(std::move(window));
+    DARKROOM_TRY(open_device());
     document_.emplace(std::move(*job_.document));
     screen_ = Screen(job_.is_edit ? &*document_ : nullptr);
     is_post_on_ = !job_.is_off;
@@ -73,7 +72,7 @@ Result<> Viewer::open() {
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
     tell_warnings();
     screen_.messages().set_folder(document_->options().folder);
-    if (Result<> done = open_views(); !done) return done;
+    DARKROOM_TRY(open_views());
     if (EditPanels* const panels = screen_.editor()) {
         panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(&effect); });
         panels->look().set_looks({.files = shipped_looks(),
@@ -94,10 +93,7 @@ Result<> Viewer::start_interface() {
     darkroom::Look look = document_->look();
     if (look.ui) interface_files_ = {look.ui->document, look.ui->controllers};
     resolve_ui(look, document_->file().parent_path());
-    if (Result<> done =
-            interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer());
-        !done)
-        return done;
+    DARKROOM_TRY(interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer()));
     return read_config();
 }
 
@@ -116,7 +112,7 @@ Result<LookView*> Viewer::view(Side side) {
                                                                     .makes_light = is_high_range(),
                                                                     .enlarges = lines_.has_value(),
                                                                     .keeps = job_.timeline.entries()});
-    if (Result<> done = made->show(look_of(side)); !done) return failure(std::move(done));
+    DARKROOM_TRY(made->show(look_of(side)));
     view = std::move(made);
     return view.get();
 }
@@ -141,15 +137,14 @@ Result<> Viewer::turn() {
     is_resting_ = !is_due();
     has_rested_ = has_rested_ || is_resting_;
     if (is_resting_) return {};
-    const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
-    if (!frame) return failure(frame.error());
-    if (!*frame) {
+    DARKROOM_TRY_VALUE(const std::optional<PresentFrame> frame, presenter_->begin(window_->extent()));
+    if (!frame) {
         is_resting_ = has_rested_ = true;
         return {};
     }
-    const Result<> shown = show(**frame);
+    const Result<> shown = show(*frame);
     // What was begun is ended: nothing else gives the window's image back.
-    if (Result<> done = presenter_->end(); !done) return done;
+    DARKROOM_TRY(presenter_->end());
     return shown;
 }
 
@@ -204,19 +199,19 @@ Result<> Viewer::show(const PresentFrame& frame) {
     // The first frame, too, has what the game says and controllers set.
     const bool is_menu_open = screen_.has_console() || gui_->has_popup();
     settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
-    if (Result<> done = begin_timing(frame); !done) return done;
+    DARKROOM_TRY(begin_timing(frame));
     choose_scale();
     has_rested_ = has_developed_ = false;
-    if (Result<> done = prepare(frame, wanted); !done) return done;
+    DARKROOM_TRY(prepare(frame, wanted));
     for (std::size_t side = 0; side < side_count; ++side)
         if (views_[side]) settle(fmt::format("plan {}", side), views_[side]->planned());
     tell_source_warnings();
     store_picture(frame);
     show_thumbnails(frame);
-    if (Result<> done = gui_->begin(window_->scale()); !done) return done;
+    DARKROOM_TRY(gui_->begin(window_->scale()));
     if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
     draw_screen(frame);
-    if (Result<> done = gui_->draw(frame); !done) return done;
+    DARKROOM_TRY(gui_->draw(frame));
     end_timing(frame);
     store_window(frame);
     // Who waits for the window may press keys now.

@@ -39,15 +39,16 @@ Result<> Viewer::make_device() {
 }
 
 Result<> Viewer::open_device() {
-    if (Result<> done = make_device(); !done) return done;
-    Result<darkroom::window::Presenter> presenter = darkroom::window::Presenter::create(
-        *device_, {.presentation = job_.presentation,
-                   .frames_in_flight = frames_in_flight,
-                   .range = job_.range,
-                   .peak_nits = job_.peak_nits,
-                   .make_surface = [this](VkInstance instance) { return window_->make_surface(instance); }});
-    if (!presenter) return failure(std::move(presenter));
-    presenter_.emplace(std::move(*presenter));
+    DARKROOM_TRY(make_device());
+    DARKROOM_TRY_VALUE(darkroom::window::Presenter presenter,
+                       darkroom::window::Presenter::create(*device_, {.presentation = job_.presentation,
+                                                                      .frames_in_flight = frames_in_flight,
+                                                                      .range = job_.range,
+                                                                      .peak_nits = job_.peak_nits,
+                                                                      .make_surface = [this](VkInstance instance) {
+                                                                          return window_->make_surface(instance);
+                                                                      }}));
+    presenter_.emplace(std::move(presenter));
     return make_source();
 }
 
@@ -56,14 +57,11 @@ Result<> Viewer::open_views() {
         *device_, is_fixed(), frames_in_flight,
         [this](darkroom::Severity, std::string_view line) { print(std::string(line)); },
         has_config() ? config_file().parent_path() : std::filesystem::path());
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
-    if (Result<> done = start_interface(); !done) return done;
-    Result<std::unique_ptr<Gui>> gui =
-        Gui::create(device_->context(), *window_,
-                    {.format = presenter_->format(), .color = presenter_->color(), .slots = frames_in_flight});
-    if (!gui) return failure(std::move(gui));
-    gui_ = std::move(*gui);
+    DARKROOM_TRY(view(Side::Look));
+    DARKROOM_TRY(start_interface());
+    DARKROOM_TRY_VALUE(
+        gui_, Gui::create(device_->context(), *window_,
+                          {.format = presenter_->format(), .color = presenter_->color(), .slots = frames_in_flight}));
     return {};
 }
 
@@ -108,9 +106,9 @@ Result<> Viewer::make_anew(const darkroom::Error& error) {
     const Playback playback = playback_;
     const bool has_other_picture = other_picture_.has_value();
     let_go_of_device();
-    if (Result<> done = open_device(); !done) return done;
+    DARKROOM_TRY(open_device());
     playback_ = playback;
-    if (Result<> done = open_views(); !done) return done;
+    DARKROOM_TRY(open_views());
     if (has_other_picture) take_other(other_file_);
     tell(fmt::format("{}: the device was made anew", error.text));
     return {};

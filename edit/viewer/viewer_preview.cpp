@@ -50,9 +50,7 @@ void Viewer::choose_scale() {
 Result<> Viewer::begin_timing(const darkroom::window::PresentFrame& frame) {
     if (!lines_) return {};
     if (timers_.context == nullptr) {
-        Result<darkroom::gpu::Timers> made = darkroom::gpu::Timers::create(device_->context(), frames_in_flight, 2);
-        if (!made) return failure(std::move(made));
-        timers_ = std::move(*made);
+        DARKROOM_TRY_VALUE(timers_, darkroom::gpu::Timers::create(device_->context(), frames_in_flight, 2));
     }
     // A device without timestamps: from one frame to the next.
     double milliseconds = passed_ * 1000;

@@ -29,9 +29,8 @@ std::array<bool, side_count> Viewer::shown_sides() const {
 
 // What the frame shows is made in the same commands, before it.
 Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
-    const bool is_first = (*look)->most().width == 0;
+    DARKROOM_TRY_VALUE(LookView* const look, view(Side::Look));
+    const bool is_first = look->most().width == 0;
     // Every side asks for the room that is wanted, and frames are as large as all that are shown can take by now.
     const VkExtent2D wanted = extent;
     const std::array<bool, side_count> is_shown = shown_sides();
@@ -48,30 +47,25 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
     bool must_wait = source_->must_wait(now, drawn) || interface_->must_wait(full_extent_, made_extent_);
     for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(made_extent_));
     if (EditPanels* const panels = screen_.panels(); panels != nullptr && !is_first)
-        must_wait = must_wait || (*look)->must_wait_to_watch(panels->watched((*look)->composer().current_plan()),
-                                                             panels->watched_level());
-    if (must_wait)
-        if (Result<> done = presenter_->wait(); !done) return done;
-    if (!is_first)
-        if (Result<> done = watch(); !done) return done;
-    if (Result<> done = source_->prepare(now, drawn); !done) return done;
+        must_wait = must_wait ||
+                    look->must_wait_to_watch(panels->watched(look->composer().current_plan()), panels->watched_level());
+    if (must_wait) DARKROOM_TRY(presenter_->wait());
+    if (!is_first) DARKROOM_TRY(watch());
+    DARKROOM_TRY(source_->prepare(now, drawn));
     last_orbit_ = scene_ != nullptr ? std::optional(now.orbit) : std::nullopt;
     last_jitter_ = now.jitter.now;
-    if (is_first)
-        if (Result<> done = (*look)->fit(*source_, made_extent_, interface_->format()); !done) return done;
+    if (is_first) DARKROOM_TRY(look->fit(*source_, made_extent_, interface_->format()));
     return record(frame);
 }
 
 Result<> Viewer::record(const PresentFrame& frame) {
-    if (Result<> done = source_->record(frame.commands); !done) return done;
+    DARKROOM_TRY(source_->record(frame.commands));
     if (other_picture_) other_picture_->record(*device_, frame.commands);
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
+    DARKROOM_TRY_VALUE(LookView* const look, view(Side::Look));
     for (const auto& any : views_)
-        if (any)
-            if (Result<> done = any->resize(made_extent_); !done) return done;
+        if (any) DARKROOM_TRY(any->resize(made_extent_));
     if (const std::optional<darkroom::ImageRef> display = source_->display_picture()) {
-        (*look)->copy(frame.commands, *display);
+        look->copy(frame.commands, *display);
         return {};
     }
     darkroom::Frame input = source_->frame();
@@ -83,30 +77,26 @@ Result<> Viewer::record(const PresentFrame& frame) {
     }
     const bool is_kept = is_picture_kept();
     if (interface_->is_given()) {
-        const Result<darkroom::ImageRef> ui =
-            interface_->record(frame.commands, frame.slot, full_extent_, made_extent_, window_->scale());
-        if (!ui) return failure(ui.error());
-        input.ui = *ui;
+        DARKROOM_TRY_VALUE(
+            input.ui, interface_->record(frame.commands, frame.slot, full_extent_, made_extent_, window_->scale()));
     }
-    if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
+    DARKROOM_TRY(job_.timeline.advance(look->composer(), input.time));
     const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side)
         if (is_shown[side] && !(is_kept && views_[side] && views_[side]->is_current()))
-            if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
+            DARKROOM_TRY(record_look(frame.commands, static_cast<Side>(side), input));
     is_cut_ = false;
     developed_version_ = document_->version();
     return inspect(frame.commands, input);
 }
 
 Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame) {
-    const Result<LookView*> found = view(side);
-    if (!found) return failure(found.error());
-    LookView& of = **found;
-    if (of.most().width == 0)
-        if (Result<> done = of.fit(*source_, full_extent_, interface_->format()); !done) return done;
+    DARKROOM_TRY_VALUE(LookView* const found, view(side));
+    LookView& of = *found;
+    if (of.most().width == 0) DARKROOM_TRY(of.fit(*source_, full_extent_, interface_->format()));
     // Only frames of fewer lines have another size than their picture.
     const VkExtent2D extent = scale_ < 1 ? made_extent_ : frame.color.used_region().extent;
-    if (Result<> done = of.resize(extent); !done) return done;
+    DARKROOM_TRY(of.resize(extent));
     if (is_fixed()) of.composer().wait_for_kernels();
     has_developed_ = true;
     // A plan that does not fit yet is on its way: the picture stays what it was.

@@ -67,13 +67,12 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     const VkFormat format = is_light ? VK_FORMAT_R8G8B8A8_SRGB : scope_format;
     if (scope_image_.info.extent.width != extent.width || scope_image_.info.extent.height != extent.height ||
         scope_image_.info.format != format) {
-        Result<darkroom::gpu::Image> made = darkroom::gpu::Image::create(
-            context, {.name = "scopes",
-                      .format = format,
-                      .extent = {extent.width, extent.height, 1},
-                      .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-        if (!made) return failure(std::move(made));
-        scope_image_ = std::move(*made);
+        DARKROOM_TRY_VALUE(scope_image_,
+                           darkroom::gpu::Image::create(
+                               context, {.name = "scopes",
+                                         .format = format,
+                                         .extent = {extent.width, extent.height, 1},
+                                         .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
     }
     darkroom::ImageRef small{.image = scope_image_.handle,
                              .view = scope_image_.view,
@@ -81,9 +80,7 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
                              .extent = extent,
                              .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
     look.copy_to(frame.commands, scope_image_);
-    Result<darkroom::Readback> read = darkroom::Readback::create(context, small);
-    if (!read) return failure(std::move(read));
-    scope_read_ = std::move(*read);
+    DARKROOM_TRY_VALUE(scope_read_, darkroom::Readback::create(context, small));
     scope_read_->record(frame.commands);
     scope_frame_ = frame.number;
     has_scopes_ = true;

@@ -31,13 +31,12 @@ Result<> Viewer::make_source() {
         SceneSource::Desc& desc = job_.scene_desc;
         desc.render.frames_in_flight = frames_in_flight;
         desc.render.extent = picture_extent();
-        Result<std::unique_ptr<SceneSource>> made = SceneSource::create(*device_, job_.scene, desc);
-        if (!made) return failure(std::move(made));
-        take_scene(std::move(*made));
+        DARKROOM_TRY_VALUE(std::unique_ptr<SceneSource> made, SceneSource::create(*device_, job_.scene, desc));
+        take_scene(std::move(made));
     } else {
-        Result<std::unique_ptr<FrameSource>> made = FrameSource::create(*device_, job_.frames, job_.frame_desc);
-        if (!made) return failure(std::move(made));
-        take_frames(std::move(*made));
+        DARKROOM_TRY_VALUE(std::unique_ptr<FrameSource> made,
+                           FrameSource::create(*device_, job_.frames, job_.frame_desc));
+        take_frames(std::move(made));
     }
     watch_source();
     return {};
@@ -110,15 +109,11 @@ void Viewer::open_subject(const std::filesystem::path& file) {
             if (is_scene) {
                 SceneSource::Desc desc = scene;
                 desc.render.frames_in_flight = frames_in_flight;
-                Result<std::unique_ptr<SceneSource>> made = SceneSource::create(*device_, file, desc);
-                if (!made) return failure(std::move(made));
-                out.scene = std::move(*made);
+                DARKROOM_TRY_VALUE(out.scene, SceneSource::create(*device_, file, desc));
                 return out;
             }
             out.files = {{.path = file, .number = darkroom::frame_number(file).value_or(0)}};
-            Result<std::unique_ptr<FrameSource>> made = FrameSource::create(*device_, out.files, frame);
-            if (!made) return failure(std::move(made));
-            out.frames = std::move(*made);
+            DARKROOM_TRY_VALUE(out.frames, FrameSource::create(*device_, out.files, frame));
             return out;
         });
     });

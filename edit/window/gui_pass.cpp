@@ -79,9 +79,7 @@ struct GrowingBuffer {
     Result<> reserve(gpu::Context& context, VkDeviceSize size, VkBufferUsageFlags usage, std::string_view name) {
         if (size <= capacity) return {};
         const VkDeviceSize wanted = size + size / 2;
-        Result<gpu::Buffer> made = gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name);
-        if (!made) return failure(std::move(made));
-        buffer = std::move(*made);
+        DARKROOM_TRY_VALUE(buffer, gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name));
         capacity = wanted;
         return {};
     }
@@ -196,32 +194,21 @@ Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontA
     pass.state_ = std::make_shared<State>();
     State& state = *pass.state_;
     state.context = &context;
-    Result<gpu::SetLayout> layout = gpu::SetLayout::create(context, std::array<gpu::SetLayout::Binding, 2>{});
-    if (!layout) return failure(std::move(layout));
-    state.layout = std::move(*layout);
-    Result<gpu::Pipeline> lists =
-        gpu::Pipeline::create(context, pipeline_desc("interface", gui_fragment_shader(), desc, state.layout.handle));
-    if (!lists) return failure(std::move(lists));
-    state.lists = std::move(*lists);
-    Result<gpu::Pipeline> panes =
-        gpu::Pipeline::create(context, pipeline_desc("pane", pane_fragment_shader(), desc, state.layout.handle));
-    if (!panes) return failure(std::move(panes));
-    state.panes = std::move(*panes);
-    Result<gpu::Pipeline> plain = gpu::Pipeline::create(
-        context, pipeline_desc("plain pane", pane_fragment_shader(), desc, state.layout.handle, true));
-    if (!plain) return failure(std::move(plain));
-    state.plain_panes = std::move(*plain);
+    DARKROOM_TRY_VALUE(state.layout, gpu::SetLayout::create(context, std::array<gpu::SetLayout::Binding, 2>{}));
+    DARKROOM_TRY_VALUE(state.lists, gpu::Pipeline::create(context, pipeline_desc("interface", gui_fragment_shader(),
+                                                                                 desc, state.layout.handle)));
+    DARKROOM_TRY_VALUE(state.panes, gpu::Pipeline::create(context, pipeline_desc("pane", pane_fragment_shader(), desc,
+                                                                                 state.layout.handle)));
+    DARKROOM_TRY_VALUE(state.plain_panes,
+                       gpu::Pipeline::create(context, pipeline_desc("plain pane", pane_fragment_shader(), desc,
+                                                                    state.layout.handle, true)));
     state.slots.resize(desc.slots);
     const std::vector<VkDescriptorSetLayout> layouts(max_panes, state.layout.handle);
     for (DrawSlot& slot : state.slots) {
-        Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
-        if (!sets) return failure(std::move(sets));
-        slot.sets = std::move(*sets);
+        DARKROOM_TRY_VALUE(slot.sets, gpu::DescriptorSets::create(context, layouts));
     }
-    Result<gpu::DescriptorSets> font_set = gpu::DescriptorSets::create(context, {&state.layout.handle, 1});
-    if (!font_set) return failure(std::move(font_set));
-    state.font_set = std::move(*font_set);
-    if (Result<> uploaded = pass.upload_fonts(atlas); !uploaded) return failure(std::move(uploaded));
+    DARKROOM_TRY_VALUE(state.font_set, gpu::DescriptorSets::create(context, {&state.layout.handle, 1}));
+    DARKROOM_TRY(pass.upload_fonts(atlas));
     return pass;
 }
 
@@ -231,28 +218,26 @@ Result<> GuiPass::upload_fonts(ImFontAtlas& atlas) {
     int width = 0, height = 0;
     atlas.GetTexDataAsRGBA32(&texels, &width, &height);
     const VkExtent3D extent{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 1};
-    Result<gpu::Image> image =
-        gpu::Image::create(context, {.name = "font atlas",
-                                     .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                     .extent = extent,
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!image) return failure(std::move(image));
+    DARKROOM_TRY_VALUE(gpu::Image image, gpu::Image::create(context, {.name = "font atlas",
+                                                                      .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                                      .extent = extent,
+                                                                      .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                               VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     const std::size_t size = std::size_t{extent.width} * extent.height * 4;
-    const Result<gpu::Buffer> staging =
-        gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "font atlas");
-    if (!staging) return failure(staging.error());
-    std::memcpy(staging->memory.mapped, texels, size);
+    DARKROOM_TRY_VALUE(const gpu::Buffer staging, gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                                      gpu::Memory::Kind::Upload, "font atlas"));
+    std::memcpy(staging.memory.mapped, texels, size);
     Result<> done = gpu::submit_and_wait(context, "uploading the font atlas", [&](VkCommandBuffer commands) {
         const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = extent};
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                        1, &copy);
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        context.vk.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                        &copy);
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     });
     if (!done) return done;
     // The wait was for everything before it on the queue, so that no frame reads the old one any more.
-    state_->font = std::move(*image);
+    state_->font = std::move(image);
     state_->font_texture = address_of(atlas.TexID);
     const VkDescriptorImageInfo font{context.linear_sampler, state_->font.view,
                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -261,14 +246,10 @@ Result<> GuiPass::upload_fonts(ImFontAtlas& atlas) {
 }
 
 Result<> GuiPass::State::write_vertices(const ImDrawData& data, DrawSlot& slot) const {
-    if (Result<> made = slot.vertices.reserve(*context, sizeof(ImDrawVert) * data.TotalVtxCount,
-                                              VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "vertices of the interface");
-        !made)
-        return made;
-    if (Result<> made = slot.indices.reserve(*context, sizeof(ImDrawIdx) * data.TotalIdxCount,
-                                             VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices of the interface");
-        !made)
-        return made;
+    DARKROOM_TRY(slot.vertices.reserve(*context, sizeof(ImDrawVert) * data.TotalVtxCount,
+                                       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "vertices of the interface"));
+    DARKROOM_TRY(slot.indices.reserve(*context, sizeof(ImDrawIdx) * data.TotalIdxCount,
+                                      VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices of the interface"));
     std::byte* vertex = slot.vertices.buffer.memory.mapped;
     std::byte* index = slot.indices.buffer.memory.mapped;
     for (int i = 0; i < data.CmdListsCount; ++i) {
@@ -316,9 +297,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
     if (!is_font) {
         const Pane& pane = *static_cast<const Pane*>(texture);
         if (!pane.view.image.is_given()) return {};
-        const Result<VkDescriptorSet> own = pane_set(pane, slot);
-        if (!own) return failure(own.error());
-        set = *own;
+        DARKROOM_TRY_VALUE(set, pane_set(pane, slot));
         set_pane(block, pane);
         pipeline = is_plain(pane) ? &plain_panes : &panes;
     }
@@ -333,7 +312,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
 }
 
 Result<> GuiPass::record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot) {
-    if (Result<> begun = begin(data, slot); !begun) return begun;
+    DARKROOM_TRY(begin(data, slot));
     const VkExtent2D whole{static_cast<std::uint32_t>(std::max(data.DisplaySize.x * data.FramebufferScale.x, 0.0F)),
                            static_cast<std::uint32_t>(std::max(data.DisplaySize.y * data.FramebufferScale.y, 0.0F))};
     return record_part(commands, data, slot, {{0, 0}, whole});
@@ -360,9 +339,7 @@ Result<> GuiPass::record_part(VkCommandBuffer commands, const ImDrawData& data, 
         const ImDrawList& list = *data.CmdLists[i];
         for (const ImDrawCmd& command : list.CmdBuffer) {
             if (command.UserCallback == nullptr) {
-                if (Result<> drawn = state_->draw(commands, data, command, block, own, first_vertex, first_index, part);
-                    !drawn)
-                    return drawn;
+                DARKROOM_TRY(state_->draw(commands, data, command, block, own, first_vertex, first_index, part));
                 continue;
             }
             if (command.UserCallback != ImDrawCallback_ResetRenderState) command.UserCallback(&list, &command);

@@ -6,9 +6,9 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <memory>
 
+#include "core/try.hpp"
 #include "window/pane.hpp"
 
 struct ImDrawData;

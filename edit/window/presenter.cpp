@@ -130,7 +130,7 @@ Presenter::State::~State() {
 
 Result<> Presenter::State::create() {
     if (!vk.load(*context)) return machine_error("the Vulkan driver lacks functions of VK_KHR_swapchain");
-    if (Result<> done = make_surface(); !done) return done;
+    DARKROOM_TRY(make_surface());
     const VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                          .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkResult result = make_semaphore(finished, &type);
@@ -153,14 +153,12 @@ Result<> Presenter::State::create() {
 }
 
 Result<> Presenter::State::make_surface() {
-    Result<VkSurfaceKHR> made = desc.make_surface(context->instance);
-    if (!made) return failure(std::move(made));
-    surface = *made;
+    DARKROOM_TRY_VALUE(surface, desc.make_surface(context->instance));
     ++counters.surfaces;
     VkBool32 is_shown = VK_FALSE;
     const VkResult asked_device =
         vk.GetPhysicalDeviceSurfaceSupportKHR(context->physical_device, context->queue_family, surface, &is_shown);
-    if (Result<> done = check(asked_device, "asking what the window shows"); !done) return done;
+    DARKROOM_TRY(check(asked_device, "asking what the window shows"));
     if (is_shown == VK_FALSE)
         return machine_error("device \"" + context->info.name + "\" cannot show pictures in this window");
     return choose_format();
@@ -171,7 +169,7 @@ Result<> Presenter::State::choose_format() {
     const VkResult result = list(formats, [&](std::uint32_t* count, VkSurfaceFormatKHR* to) {
         return vk.GetPhysicalDeviceSurfaceFormatsKHR(context->physical_device, surface, count, to);
     });
-    if (Result<> done = check(result, "listing the formats of the window"); !done) return done;
+    DARKROOM_TRY(check(result, "listing the formats of the window"));
     const std::optional<SurfaceChoice> chosen = choose_surface(formats, desc.range, desc.peak_nits);
     if (!chosen) return machine_error("the window has no format that pictures can be shown in");
     format = chosen->format;
@@ -323,8 +321,7 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
     if (window.width == 0 || window.height == 0) return std::nullopt;
     // The slot's last frame, and with it all before that one.
     const std::uint64_t in_flight = desc.frames_in_flight;
-    if (next >= in_flight)
-        if (Result<> done = wait_for(next - in_flight + 1); !done) return failure(std::move(done));
+    if (next >= in_flight) DARKROOM_TRY(wait_for(next - in_flight + 1));
     free_retired();
     const bool is_resized = window.width != asked.width || window.height != asked.height;
     VkResult result = is_lost ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
@@ -347,7 +344,7 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
         case VK_TIMEOUT:
             return std::nullopt;
         case VK_ERROR_SURFACE_LOST_KHR:
-            if (Result<> done = replace_surface(); !done) return failure(std::move(done));
+            DARKROOM_TRY(replace_surface());
             return std::nullopt;
         default:
             return failure(check(result, "getting a picture of the window"));
@@ -450,7 +447,7 @@ Presenter::~Presenter() = default;
 Result<Presenter> Presenter::create(Device& device, PresenterDesc desc) {
     desc.frames_in_flight = std::max(desc.frames_in_flight, 1U);
     auto state = std::make_unique<State>(device.shared_context(), std::move(desc));
-    if (Result<> done = state->create(); !done) return failure(std::move(done));
+    DARKROOM_TRY(state->create());
     return Presenter(std::move(state));
 }
 

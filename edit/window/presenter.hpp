@@ -7,11 +7,11 @@
 
 #include <cstdint>
 #include <darkroom/device.hpp>
-#include <darkroom/result.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "core/try.hpp"
 #include "window/surface_format.hpp"
 
 namespace darkroom::window {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <darkroom/result.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/caught.hpp"
+#include "core/try.hpp"
 
 namespace darkroom::c {
 
@@ -100,16 +100,15 @@ template <class T>
         return user_error(fmt::format("{} {}: allowed are at most {}", count, name, max_elements));
     out.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-        auto one = read_at(first, i, name);
-        if (!one) return failure(std::move(one));
-        out.push_back(*one);
+        DARKROOM_TRY_VALUE(auto one, read_at(first, i, name));
+        out.push_back(one);
     }
     return out;
 }
 /// Fills in a struct of the caller's, whose size it has set.
 template <class T>
 [[nodiscard]] Result<> write(T* out, T value, std::string_view name) {
-    if (auto known = read(out, name); !known) return failure(std::move(known));
+    DARKROOM_TRY(read(out, name));
     value.struct_size = out->struct_size;
     std::memcpy(out, &value, sizeof(T));
     return {};

@@ -49,24 +49,21 @@ Result<std::span<const char* const>> names_of(const char* const* names, std::uin
 }
 
 Result<DeviceDesc> desc_of(const DarkroomDeviceDesc* given) {
-    const auto desc = read_or_default(given, "DarkroomDeviceDesc");
-    if (!desc) return failure(desc.error());
-    const auto kernels = bytes_of(desc->kernels, desc->kernels_size);
-    if (!kernels) return failure(kernels.error());
-    const auto instance_extensions =
-        names_of(desc->instance_extensions, desc->instance_extension_count, "instance_extensions");
-    if (!instance_extensions) return failure(instance_extensions.error());
-    const auto device_extensions = names_of(desc->device_extensions, desc->device_extension_count, "device_extensions");
-    if (!device_extensions) return failure(device_extensions.error());
-    return DeviceDesc{.select = string(desc->select),
-                      .compiles_only = desc->compiles_only != 0,
-                      .validate = desc->validate != 0,
-                      .log = sink_of(desc->log, desc->log_user),
-                      .cache_folder = string(desc->cache_folder),
-                      .caches_on_disk = desc->no_caches == 0,
-                      .kernels = *kernels,
-                      .instance_extensions = *instance_extensions,
-                      .device_extensions = *device_extensions};
+    DARKROOM_TRY_VALUE(const auto desc, read_or_default(given, "DarkroomDeviceDesc"));
+    DARKROOM_TRY_VALUE(const auto kernels, bytes_of(desc.kernels, desc.kernels_size));
+    DARKROOM_TRY_VALUE(const auto instance_extensions,
+                       names_of(desc.instance_extensions, desc.instance_extension_count, "instance_extensions"));
+    DARKROOM_TRY_VALUE(const auto device_extensions,
+                       names_of(desc.device_extensions, desc.device_extension_count, "device_extensions"));
+    return DeviceDesc{.select = string(desc.select),
+                      .compiles_only = desc.compiles_only != 0,
+                      .validate = desc.validate != 0,
+                      .log = sink_of(desc.log, desc.log_user),
+                      .cache_folder = string(desc.cache_folder),
+                      .caches_on_disk = desc.no_caches == 0,
+                      .kernels = kernels,
+                      .instance_extensions = instance_extensions,
+                      .device_extensions = device_extensions};
 }
 
 /// A host's own functions for memory behind those of C++, which the device's objects call for as long as they live.
@@ -113,78 +110,71 @@ using namespace darkroom::c;
 
 DarkroomResult darkroom_device_list(DarkroomDeviceInfo* infos, uint32_t* count) {
     return call("darkroom_device_list", [&]() -> Result<> {
-        if (auto ok = needs("count", count); !ok) return ok;
-        auto all = Device::list();
-        if (!all) return failure(std::move(all));
-        const auto room = infos == nullptr ? 0 : std::min<std::size_t>(*count, all->size());
-        for (std::size_t i = 0; i < room; ++i)
-            if (auto ok = write_at(infos, i, info_of((*all)[i]), "DarkroomDeviceInfo"); !ok) return ok;
-        *count = static_cast<std::uint32_t>(all->size());
+        DARKROOM_TRY(needs("count", count));
+        DARKROOM_TRY_VALUE(auto all, Device::list());
+        const auto room = infos == nullptr ? 0 : std::min<std::size_t>(*count, all.size());
+        for (std::size_t i = 0; i < room; ++i) DARKROOM_TRY(write_at(infos, i, info_of(all[i]), "DarkroomDeviceInfo"));
+        *count = static_cast<std::uint32_t>(all.size());
         return {};
     });
 }
 
 DarkroomResult darkroom_device_create(const DarkroomDeviceDesc* desc, DarkroomDevice* device) {
     return call("darkroom_device_create", [&]() -> Result<> {
-        if (auto ok = needs("device", device); !ok) return ok;
-        const auto read_desc = desc_of(desc);
-        if (!read_desc) return failure(read_desc.error());
-        auto made = Device::create(*read_desc);
-        if (!made) return failure(std::move(made));
-        *device = new DarkroomDeviceObject{std::move(*made)};
+        DARKROOM_TRY(needs("device", device));
+        DARKROOM_TRY_VALUE(const auto read_desc, desc_of(desc));
+        DARKROOM_TRY_VALUE(auto made, Device::create(read_desc));
+        *device = new DarkroomDeviceObject{std::move(made)};
         return {};
     });
 }
 
 DarkroomResult darkroom_device_assumed(DarkroomDeviceProfile profile, DarkroomDevice* device) {
     return call("darkroom_device_assumed", [&]() -> Result<> {
-        if (auto ok = needs("device", device); !ok) return ok;
-        const auto kind = enumerator<DeviceProfile>(profile, DARKROOM_DEVICE_PROFILE_SOFTWARE, "profile");
-        if (!kind) return failure(kind.error());
-        *device = new DarkroomDeviceObject{Device::assumed(*kind)};
+        DARKROOM_TRY(needs("device", device));
+        DARKROOM_TRY_VALUE(const auto kind,
+                           enumerator<DeviceProfile>(profile, DARKROOM_DEVICE_PROFILE_SOFTWARE, "profile"));
+        *device = new DarkroomDeviceObject{Device::assumed(kind)};
         return {};
     });
 }
 
 DarkroomResult darkroom_device_adopt(const DarkroomAdoptDesc* given, DarkroomDevice* device) {
     return call("darkroom_device_adopt", [&]() -> Result<> {
-        if (auto ok = needs("desc", given, "device", device); !ok) return ok;
-        const auto desc = read(given, "DarkroomAdoptDesc");
-        if (!desc) return failure(desc.error());
-        const auto kernels = bytes_of(desc->kernels, desc->kernels_size);
-        if (!kernels) return failure(kernels.error());
-        const auto instance_extensions = names_of(
-            desc->enabled_instance_extensions, desc->enabled_instance_extension_count, "enabled_instance_extensions");
-        if (!instance_extensions) return failure(instance_extensions.error());
-        const auto device_extensions = names_of(desc->enabled_device_extensions, desc->enabled_device_extension_count,
-                                                "enabled_device_extensions");
-        if (!device_extensions) return failure(device_extensions.error());
-        if ((desc->allocate == nullptr) != (desc->free == nullptr))
+        DARKROOM_TRY(needs("desc", given, "device", device));
+        DARKROOM_TRY_VALUE(const auto desc, read(given, "DarkroomAdoptDesc"));
+        DARKROOM_TRY_VALUE(const auto kernels, bytes_of(desc.kernels, desc.kernels_size));
+        DARKROOM_TRY_VALUE(const auto instance_extensions,
+                           names_of(desc.enabled_instance_extensions, desc.enabled_instance_extension_count,
+                                    "enabled_instance_extensions"));
+        DARKROOM_TRY_VALUE(
+            const auto device_extensions,
+            names_of(desc.enabled_device_extensions, desc.enabled_device_extension_count, "enabled_device_extensions"));
+        if ((desc.allocate == nullptr) != (desc.free == nullptr))
             return user_error("allocate and free: one is null; allowed are both or none");
-        AdoptDesc adopt{.instance = desc->instance,
-                        .physical_device = desc->physical_device,
-                        .device = desc->device,
-                        .queue_family = desc->queue_family,
-                        .enabled_features = desc->enabled_features,
-                        .enabled_instance_extensions = *instance_extensions,
-                        .enabled_device_extensions = *device_extensions,
-                        .get_proc = desc->get_proc,
-                        .log = sink_of(desc->log, desc->log_user),
-                        .cache_folder = string(desc->cache_folder),
-                        .caches_on_disk = desc->no_caches == 0,
-                        .kernels = *kernels,
-                        .pipeline_cache = desc->pipeline_cache,
-                        .allocator = desc->allocator};
-        if (desc->api_version != 0) adopt.api_version = desc->api_version;
+        AdoptDesc adopt{.instance = desc.instance,
+                        .physical_device = desc.physical_device,
+                        .device = desc.device,
+                        .queue_family = desc.queue_family,
+                        .enabled_features = desc.enabled_features,
+                        .enabled_instance_extensions = instance_extensions,
+                        .enabled_device_extensions = device_extensions,
+                        .get_proc = desc.get_proc,
+                        .log = sink_of(desc.log, desc.log_user),
+                        .cache_folder = string(desc.cache_folder),
+                        .caches_on_disk = desc.no_caches == 0,
+                        .kernels = kernels,
+                        .pipeline_cache = desc.pipeline_cache,
+                        .allocator = desc.allocator};
+        if (desc.api_version != 0) adopt.api_version = desc.api_version;
         std::shared_ptr<Memory> memory;
-        if (desc->allocate != nullptr) {
-            memory = std::make_shared<Memory>(Memory{desc->allocate, desc->free, desc->memory_user});
+        if (desc.allocate != nullptr) {
+            memory = std::make_shared<Memory>(Memory{desc.allocate, desc.free, desc.memory_user});
             adopt.memory = {.allocate = allocate, .free = release, .user = memory.get()};
         }
-        auto made = Device::adopt(adopt);
-        if (!made) return failure(std::move(made));
-        made->context().memory_hooks_owner = std::move(memory);
-        *device = new DarkroomDeviceObject{std::move(*made)};
+        DARKROOM_TRY_VALUE(auto made, Device::adopt(adopt));
+        made.context().memory_hooks_owner = std::move(memory);
+        *device = new DarkroomDeviceObject{std::move(made)};
         return {};
     });
 }
@@ -193,14 +183,14 @@ void darkroom_device_destroy(DarkroomDevice device) { delete device; }
 
 DarkroomResult darkroom_device_info(DarkroomDevice device, DarkroomDeviceInfo* info) {
     return call("darkroom_device_info", [&]() -> Result<> {
-        if (auto ok = needs("device", device, "info", info); !ok) return ok;
+        DARKROOM_TRY(needs("device", device, "info", info));
         return write(info, info_of(device->device.info()), "DarkroomDeviceInfo");
     });
 }
 
 DarkroomResult darkroom_device_validation_messages(DarkroomDevice device, uint64_t* count) {
     return call("darkroom_device_validation_messages", [&]() -> Result<> {
-        if (auto ok = needs("device", device, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("device", device, "count", count));
         *count = device->device.validation_messages();
         return {};
     });

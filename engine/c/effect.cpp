@@ -64,7 +64,7 @@ DarkroomEffect darkroom_effect_find(const char* name) {
 
 DarkroomResult darkroom_effect_info(DarkroomEffect effect, DarkroomEffectInfo* info) {
     return call("darkroom_effect_info", [&]() -> Result<> {
-        if (auto ok = needs("effect", effect, "info", info); !ok) return ok;
+        DARKROOM_TRY(needs("effect", effect, "info", info));
         const EffectInfo& from = *effect->info;
         DarkroomEffectInfo out{};
         out.parameter_count = static_cast<std::uint32_t>(from.parameters.rows.size());
@@ -81,7 +81,7 @@ DarkroomResult darkroom_effect_info(DarkroomEffect effect, DarkroomEffectInfo* i
 
 DarkroomResult darkroom_effect_parameter(DarkroomEffect effect, uint32_t index, DarkroomParameterInfo* info) {
     return call("darkroom_effect_parameter", [&]() -> Result<> {
-        if (auto ok = needs("effect", effect, "info", info); !ok) return ok;
+        DARKROOM_TRY(needs("effect", effect, "info", info));
         const ParamTable& table = effect->info->parameters;
         if (index >= table.rows.size())
             return user_error(fmt::format("index = {}: {} has {} parameters", index, effect->name, table.rows.size()));
@@ -108,20 +108,18 @@ DarkroomResult darkroom_effect_parameter(DarkroomEffect effect, uint32_t index, 
 
 DarkroomResult darkroom_custom_effect_load(const char* file, DarkroomCustomEffect* custom) {
     return call("darkroom_custom_effect_load", [&]() -> Result<> {
-        if (auto ok = needs("file", file, "custom", custom); !ok) return ok;
-        auto made = CustomEffect::load(file);
-        if (!made) return failure(std::move(made));
-        *custom = new DarkroomCustomEffectObject(std::move(*made));
+        DARKROOM_TRY(needs("file", file, "custom", custom));
+        DARKROOM_TRY_VALUE(auto made, CustomEffect::load(file));
+        *custom = new DarkroomCustomEffectObject(std::move(made));
         return {};
     });
 }
 
 DarkroomResult darkroom_custom_effect_parse(const char* text, const char* shown_name, DarkroomCustomEffect* custom) {
     return call("darkroom_custom_effect_parse", [&]() -> Result<> {
-        if (auto ok = needs("text", text, "shown_name", shown_name, "custom", custom); !ok) return ok;
-        auto made = CustomEffect::parse(text, shown_name);
-        if (!made) return failure(std::move(made));
-        *custom = new DarkroomCustomEffectObject(std::move(*made));
+        DARKROOM_TRY(needs("text", text, "shown_name", shown_name, "custom", custom));
+        DARKROOM_TRY_VALUE(auto made, CustomEffect::parse(text, shown_name));
+        *custom = new DarkroomCustomEffectObject(std::move(made));
         return {};
     });
 }

@@ -7,7 +7,7 @@ using namespace darkroom::c;
 
 DarkroomResult darkroom_hud_inertia_create(DarkroomHudInertia* inertia) {
     return call("darkroom_hud_inertia_create", [&]() -> Result<> {
-        if (auto ok = needs("inertia", inertia); !ok) return ok;
+        DARKROOM_TRY(needs("inertia", inertia));
         *inertia = new DarkroomHudInertiaObject{};
         return {};
     });
@@ -18,7 +18,7 @@ void darkroom_hud_inertia_destroy(DarkroomHudInertia inertia) { delete inertia; 
 DarkroomResult darkroom_hud_inertia_step(DarkroomHudInertia inertia, double delta_time, double yaw,
                                          VkBool32 is_on_ground, double velocity_z, float offset[2]) {
     return call("darkroom_hud_inertia_step", [&]() -> Result<> {
-        if (auto ok = needs("inertia", inertia, "offset", offset); !ok) return ok;
+        DARKROOM_TRY(needs("inertia", inertia, "offset", offset));
         const Vec2 moved = inertia->inertia.step(delta_time, yaw, is_on_ground != 0, velocity_z);
         offset[0] = moved.x;
         offset[1] = moved.y;
@@ -28,7 +28,7 @@ DarkroomResult darkroom_hud_inertia_step(DarkroomHudInertia inertia, double delt
 
 DarkroomResult darkroom_hud_inertia_offset(DarkroomHudInertia inertia, float offset[2]) {
     return call("darkroom_hud_inertia_offset", [&]() -> Result<> {
-        if (auto ok = needs("inertia", inertia, "offset", offset); !ok) return ok;
+        DARKROOM_TRY(needs("inertia", inertia, "offset", offset));
         offset[0] = inertia->inertia.offset().x;
         offset[1] = inertia->inertia.offset().y;
         return {};
@@ -37,7 +37,7 @@ DarkroomResult darkroom_hud_inertia_offset(DarkroomHudInertia inertia, float off
 
 DarkroomResult darkroom_hud_inertia_reset(DarkroomHudInertia inertia) {
     return call("darkroom_hud_inertia_reset", [&]() -> Result<> {
-        if (auto ok = needs("inertia", inertia); !ok) return ok;
+        DARKROOM_TRY(needs("inertia", inertia));
         inertia->inertia.reset();
         return {};
     });

@@ -6,7 +6,7 @@ using namespace darkroom::c;
 
 DarkroomResult darkroom_kernel_file_create(DarkroomKernelFile* file) {
     return call("darkroom_kernel_file_create", [&]() -> Result<> {
-        if (auto ok = needs("file", file); !ok) return ok;
+        DARKROOM_TRY(needs("file", file));
         *file = new DarkroomKernelFileObject{};
         return {};
     });
@@ -17,16 +17,15 @@ void darkroom_kernel_file_destroy(DarkroomKernelFile file) { delete file; }
 DarkroomResult darkroom_kernel_file_add(DarkroomKernelFile file, DarkroomComposer composer,
                                         const DarkroomCompileDesc* given) {
     return call("darkroom_kernel_file_add", [&]() -> Result<> {
-        if (auto ok = needs("file", file, "composer", composer, "desc", given); !ok) return ok;
-        const auto desc = compile_desc_of(given);
-        if (!desc) return failure(desc.error());
-        return file->file.add(composer->composer, *desc);
+        DARKROOM_TRY(needs("file", file, "composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, compile_desc_of(given));
+        return file->file.add(composer->composer, desc);
     });
 }
 
 DarkroomResult darkroom_kernel_file_size(DarkroomKernelFile file, uint32_t* count) {
     return call("darkroom_kernel_file_size", [&]() -> Result<> {
-        if (auto ok = needs("file", file, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("file", file, "count", count));
         *count = static_cast<std::uint32_t>(file->file.size());
         return {};
     });
@@ -34,7 +33,7 @@ DarkroomResult darkroom_kernel_file_size(DarkroomKernelFile file, uint32_t* coun
 
 DarkroomResult darkroom_kernel_file_bytes(DarkroomKernelFile file, const void** bytes, size_t* size) {
     return call("darkroom_kernel_file_bytes", [&]() -> Result<> {
-        if (auto ok = needs("file", file, "bytes", bytes, "size", size); !ok) return ok;
+        DARKROOM_TRY(needs("file", file, "bytes", bytes, "size", size));
         file->bytes = file->file.bytes();
         *bytes = file->bytes.data();
         *size = file->bytes.size();

@@ -23,28 +23,25 @@ using namespace darkroom::c;
 DarkroomResult darkroom_composer_compile(DarkroomComposer composer, const DarkroomCompileDesc* given,
                                          DarkroomPlan* plan) {
     return call("darkroom_composer_compile", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given); !ok) return ok;
-        const auto desc = compile_desc_of(given);
-        if (!desc) return failure(desc.error());
-        auto made = composer->composer.compile(*desc);
-        if (!made) return failure(std::move(made));
-        give(std::move(*made), plan);
+        DARKROOM_TRY(needs("composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, compile_desc_of(given));
+        DARKROOM_TRY_VALUE(auto made, composer->composer.compile(desc));
+        give(std::move(made), plan);
         return {};
     });
 }
 
 DarkroomResult darkroom_composer_compile_later(DarkroomComposer composer, const DarkroomCompileDesc* given) {
     return call("darkroom_composer_compile_later", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given); !ok) return ok;
-        const auto desc = compile_desc_of(given);
-        if (!desc) return failure(desc.error());
-        return composer->composer.compile_later(*desc);
+        DARKROOM_TRY(needs("composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, compile_desc_of(given));
+        return composer->composer.compile_later(desc);
     });
 }
 
 DarkroomResult darkroom_composer_pending(DarkroomComposer composer, VkBool32* is_pending) {
     return call("darkroom_composer_pending", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "is_pending", is_pending); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "is_pending", is_pending));
         const PendingCompile pending = composer->composer.pending();
         *is_pending = pending.is_pending;
         return pending.error ? failure(*pending.error) : Result<>{};
@@ -53,7 +50,7 @@ DarkroomResult darkroom_composer_pending(DarkroomComposer composer, VkBool32* is
 
 DarkroomResult darkroom_composer_coming_plan(DarkroomComposer composer, DarkroomPlan* plan) {
     return call("darkroom_composer_coming_plan", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "plan", plan); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "plan", plan));
         const Plan* const coming = composer->composer.coming_plan();
         *plan = nullptr;
         if (coming != nullptr) give(*coming, plan);
@@ -63,7 +60,7 @@ DarkroomResult darkroom_composer_coming_plan(DarkroomComposer composer, Darkroom
 
 DarkroomResult darkroom_composer_current_plan(DarkroomComposer composer, DarkroomPlan* plan) {
     return call("darkroom_composer_current_plan", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "plan", plan); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "plan", plan));
         const Plan* const now = composer->composer.current_plan();
         if (now == nullptr) return user_error("the composer has no plan: compile it");
         give(*now, plan);
@@ -73,12 +70,10 @@ DarkroomResult darkroom_composer_current_plan(DarkroomComposer composer, Darkroo
 
 DarkroomResult darkroom_composer_plan(DarkroomComposer composer, const DarkroomCompileDesc* given, DarkroomPlan* plan) {
     return call("darkroom_composer_plan", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given, "plan", plan); !ok) return ok;
-        const auto desc = compile_desc_of(given);
-        if (!desc) return failure(desc.error());
-        auto made = composer->composer.plan(*desc);
-        if (!made) return failure(std::move(made));
-        give(std::move(*made), plan);
+        DARKROOM_TRY(needs("composer", composer, "desc", given, "plan", plan));
+        DARKROOM_TRY_VALUE(const auto desc, compile_desc_of(given));
+        DARKROOM_TRY_VALUE(auto made, composer->composer.plan(desc));
+        give(std::move(made), plan);
         return {};
     });
 }
@@ -86,19 +81,17 @@ DarkroomResult darkroom_composer_plan(DarkroomComposer composer, const DarkroomC
 DarkroomResult darkroom_composer_statistics(DarkroomComposer composer, const DarkroomCompileDesc* given,
                                             DarkroomKernelValue* values, uint32_t* count) {
     return call("darkroom_composer_statistics", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given, "count", count); !ok) return ok;
-        const auto desc = compile_desc_of(given);
-        if (!desc) return failure(desc.error());
-        const auto kernels = composer->composer.statistics(*desc);
-        if (!kernels) return failure(kernels.error());
+        DARKROOM_TRY(needs("composer", composer, "desc", given, "count", count));
+        DARKROOM_TRY_VALUE(const auto desc, compile_desc_of(given));
+        DARKROOM_TRY_VALUE(const auto kernels, composer->composer.statistics(desc));
         std::vector<std::string> texts;
-        for (const KernelStatistics& kernel : *kernels) {
+        for (const KernelStatistics& kernel : kernels) {
             texts.push_back(kernel.name);
             for (const KernelStatistics::Value& value : kernel.values) texts.push_back(value.name);
         }
         composer->texts = std::move(texts);
         std::size_t row = 0, text = 0;
-        for (const KernelStatistics& kernel : *kernels) {
+        for (const KernelStatistics& kernel : kernels) {
             DarkroomKernelValue out{};
             out.subgroup = kernel.subgroup;
             std::ranges::copy(kernel.workgroup, out.workgroup);
@@ -106,8 +99,7 @@ DarkroomResult darkroom_composer_statistics(DarkroomComposer composer, const Dar
             for (const KernelStatistics::Value& value : kernel.values) {
                 out.name = composer->texts[text++].c_str();
                 out.value = value.value;
-                if (values != nullptr && row < *count)
-                    if (auto ok = write_at(values, row, out, "DarkroomKernelValue"); !ok) return ok;
+                if (values != nullptr && row < *count) DARKROOM_TRY(write_at(values, row, out, "DarkroomKernelValue"));
                 ++row;
             }
         }
@@ -139,23 +131,22 @@ void darkroom_plan_destroy(DarkroomPlan plan) { delete plan; }
 DarkroomResult darkroom_composer_record(DarkroomComposer composer, VkCommandBuffer commands,
                                         const DarkroomFrame* given) {
     return call("darkroom_composer_record", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "commands", commands, "frame", given); !ok) return ok;
-        const auto frame = frame_of(given, *composer);
-        if (!frame) return failure(frame.error());
-        return composer->composer.record(commands, *frame);
+        DARKROOM_TRY(needs("composer", composer, "commands", commands, "frame", given));
+        DARKROOM_TRY_VALUE(const auto frame, frame_of(given, *composer));
+        return composer->composer.record(commands, frame);
     });
 }
 
 DarkroomResult darkroom_composer_abandon(DarkroomComposer composer) {
     return call("darkroom_composer_abandon", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.abandon();
     });
 }
 
 DarkroomResult darkroom_composer_watch_state(DarkroomComposer composer, uint32_t id, DarkroomWatchState* state) {
     return call("darkroom_composer_watch_state", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "state", state); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "state", state));
         *state = static_cast<DarkroomWatchState>(composer->composer.watch_state(id));
         return {};
     });
@@ -163,7 +154,7 @@ DarkroomResult darkroom_composer_watch_state(DarkroomComposer composer, uint32_t
 
 DarkroomResult darkroom_composer_wait_for_kernels(DarkroomComposer composer) {
     return call("darkroom_composer_wait_for_kernels", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         composer->composer.wait_for_kernels();
         return {};
     });
@@ -172,7 +163,7 @@ DarkroomResult darkroom_composer_wait_for_kernels(DarkroomComposer composer) {
 DarkroomResult darkroom_composer_times(DarkroomComposer composer, uint64_t* frame_index, DarkroomPassTime* passes,
                                        uint32_t* count) {
     return call("darkroom_composer_times", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "count", count));
         const RecordingTimes times = composer->composer.times();
         composer->texts.clear();
         for (const PassTime& pass : times.passes) composer->texts.emplace_back(pass.name);
@@ -180,7 +171,7 @@ DarkroomResult darkroom_composer_times(DarkroomComposer composer, uint64_t* fram
             DarkroomPassTime out{};
             out.name = composer->texts[i].c_str();
             out.milliseconds = times.passes[i].milliseconds;
-            if (auto ok = write_at(passes, i, out, "DarkroomPassTime"); !ok) return ok;
+            DARKROOM_TRY(write_at(passes, i, out, "DarkroomPassTime"));
         }
         *count = static_cast<std::uint32_t>(times.passes.size());
         if (frame_index != nullptr) *frame_index = times.frame_index;
@@ -191,7 +182,7 @@ DarkroomResult darkroom_composer_times(DarkroomComposer composer, uint64_t* fram
 DarkroomResult darkroom_composer_value(DarkroomComposer composer, const char* name, uint32_t view,
                                        uint64_t* frame_index, float* numbers, uint32_t* count) {
     return call("darkroom_composer_value", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "name", name, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "name", name, "count", count));
         const ValueReading reading = composer->composer.value(name, view);
         write_all(reading.numbers, numbers, count);
         if (frame_index != nullptr) *frame_index = reading.frame_index;
@@ -201,7 +192,7 @@ DarkroomResult darkroom_composer_value(DarkroomComposer composer, const char* na
 
 DarkroomResult darkroom_composer_record_microseconds(DarkroomComposer composer, double* microseconds) {
     return call("darkroom_composer_record_microseconds", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "microseconds", microseconds); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "microseconds", microseconds));
         *microseconds = composer->composer.record_microseconds();
         return {};
     });
@@ -209,10 +200,9 @@ DarkroomResult darkroom_composer_record_microseconds(DarkroomComposer composer, 
 
 DarkroomResult darkroom_composer_rebind(DarkroomComposer composer, DarkroomDevice device, DarkroomPlan* plan) {
     return call("darkroom_composer_rebind", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "device", device); !ok) return ok;
-        auto made = composer->composer.rebind(device->device);
-        if (!made) return failure(std::move(made));
-        give(std::move(*made), plan);
+        DARKROOM_TRY(needs("composer", composer, "device", device));
+        DARKROOM_TRY_VALUE(auto made, composer->composer.rebind(device->device));
+        give(std::move(made), plan);
         return {};
     });
 }
@@ -234,14 +224,13 @@ void darkroom_jittered(const float projection[16], const float jitter[2], VkExte
 DarkroomResult darkroom_check_temporal(const DarkroomCamera* given, VkExtent2D extent, const float* depth,
                                        const float* velocity, const char** text) {
     return call("darkroom_check_temporal", [&]() -> Result<> {
-        if (auto ok = needs("camera", given, "depth", depth, "velocity", velocity, "text", text); !ok) return ok;
-        const auto camera = camera_of(given);
-        if (!camera) return failure(camera.error());
+        DARKROOM_TRY(needs("camera", given, "depth", depth, "velocity", velocity, "text", text));
+        DARKROOM_TRY_VALUE(const auto camera, camera_of(given));
         const std::size_t pixels = std::size_t{extent.width} * extent.height;
         thread_local std::string lines;
         lines.clear();
         for (const std::string& line : check_temporal(
-                 {.camera = *camera, .extent = extent, .depth = {depth, pixels}, .velocity = {velocity, 2 * pixels}}))
+                 {.camera = camera, .extent = extent, .depth = {depth, pixels}, .velocity = {velocity, 2 * pixels}}))
             lines += line + "\n";
         *text = lines.c_str();
         return {};

@@ -18,19 +18,14 @@ Result<const std::uint32_t*> words_of(const DarkroomEntryDesc& desc, const Effec
 /// Adds an effect, at the end or, of a given `before`, in front of that entry.
 Result<> add(DarkroomComposer composer, const EffectInfo& effect, Handle before, const DarkroomEntryDesc* given,
              DarkroomHandle* handle) {
-    const auto desc = read_or_default(given, "DarkroomEntryDesc");
-    if (!desc) return failure(desc.error());
-    const auto entry = entry_desc_of(*desc);
-    if (!entry) return failure(entry.error());
-    const auto words = words_of(*desc, effect);
-    if (!words) return failure(words.error());
+    DARKROOM_TRY_VALUE(const auto desc, read_or_default(given, "DarkroomEntryDesc"));
+    DARKROOM_TRY_VALUE(const auto entry, entry_desc_of(desc));
+    DARKROOM_TRY_VALUE(const auto words, words_of(desc, effect));
     Handle made;
     if (before.is_given()) {
-        const auto inserted = composer->composer.insert(before, effect, *words, *entry);
-        if (!inserted) return failure(inserted.error());
-        made = *inserted;
+        DARKROOM_TRY_VALUE(made, composer->composer.insert(before, effect, words, entry));
     } else {
-        made = composer->composer.add(effect, *words, *entry);
+        made = composer->composer.add(effect, words, entry);
         if (!made.is_given()) return machine_error("out of memory", ErrorCode::OutOfMemory);
     }
     if (handle != nullptr) *handle = number_of(made);
@@ -47,14 +42,13 @@ using namespace darkroom::c;
 DarkroomResult darkroom_composer_create(DarkroomDevice device, const DarkroomComposerDesc* given,
                                         DarkroomComposer* composer) {
     return call("darkroom_composer_create", [&]() -> Result<> {
-        if (auto ok = needs("device", device, "composer", composer); !ok) return ok;
-        const auto desc = read_or_default(given, "DarkroomComposerDesc");
-        if (!desc) return failure(desc.error());
+        DARKROOM_TRY(needs("device", device, "composer", composer));
+        DARKROOM_TRY_VALUE(const auto desc, read_or_default(given, "DarkroomComposerDesc"));
         ComposerDesc out;
-        if (desc->frames_in_flight != 0) out.frames_in_flight = desc->frames_in_flight;
-        out.has_timers = desc->has_timers != 0;
-        if (desc->max_threads != 0) out.max_threads = desc->max_threads;
-        if (desc->no_threads != 0) out.max_threads = 0;
+        if (desc.frames_in_flight != 0) out.frames_in_flight = desc.frames_in_flight;
+        out.has_timers = desc.has_timers != 0;
+        if (desc.max_threads != 0) out.max_threads = desc.max_threads;
+        if (desc.no_threads != 0) out.max_threads = 0;
         *composer = new DarkroomComposerObject{Composer(device->device, out)};
         return {};
     });
@@ -65,17 +59,16 @@ void darkroom_composer_destroy(DarkroomComposer composer) { delete composer; }
 DarkroomResult darkroom_composer_add(DarkroomComposer composer, const char* effect, const DarkroomEntryDesc* desc,
                                      DarkroomHandle* handle) {
     return call("darkroom_composer_add", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
-        const auto info = effect_named(effect);
-        if (!info) return failure(info.error());
-        return add(composer, **info, {}, desc, handle);
+        DARKROOM_TRY(needs("composer", composer, "effect", effect));
+        DARKROOM_TRY_VALUE(const auto info, effect_named(effect));
+        return add(composer, *info, {}, desc, handle);
     });
 }
 
 DarkroomResult darkroom_composer_add_effect(DarkroomComposer composer, DarkroomEffect effect,
                                             const DarkroomEntryDesc* desc, DarkroomHandle* handle) {
     return call("darkroom_composer_add_effect", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "effect", effect));
         return add(composer, *effect->info, {}, desc, handle);
     });
 }
@@ -83,29 +76,29 @@ DarkroomResult darkroom_composer_add_effect(DarkroomComposer composer, DarkroomE
 DarkroomResult darkroom_composer_insert(DarkroomComposer composer, DarkroomHandle before, DarkroomEffect effect,
                                         const DarkroomEntryDesc* desc, DarkroomHandle* handle) {
     return call("darkroom_composer_insert", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(before)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "effect", effect));
+        DARKROOM_TRY(composer->composer.check(handle_of(before)));
         return add(composer, *effect->info, handle_of(before), desc, handle);
     });
 }
 
 DarkroomResult darkroom_composer_remove(DarkroomComposer composer, DarkroomHandle handle) {
     return call("darkroom_composer_remove", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.remove(handle_of(handle));
     });
 }
 
 DarkroomResult darkroom_composer_move(DarkroomComposer composer, DarkroomHandle handle, DarkroomHandle before) {
     return call("darkroom_composer_move", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.move(handle_of(handle), handle_of(before));
     });
 }
 
 DarkroomResult darkroom_composer_replace(DarkroomComposer composer, DarkroomHandle handle, DarkroomEffect effect) {
     return call("darkroom_composer_replace", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "effect", effect));
         return composer->composer.replace(handle_of(handle), *effect->info, nullptr);
     });
 }
@@ -113,18 +106,16 @@ DarkroomResult darkroom_composer_replace(DarkroomComposer composer, DarkroomHand
 DarkroomResult darkroom_composer_rewire(DarkroomComposer composer, DarkroomHandle handle,
                                         const DarkroomEntryDesc* given) {
     return call("darkroom_composer_rewire", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given); !ok) return ok;
-        const auto desc = read(given, "DarkroomEntryDesc");
-        if (!desc) return failure(desc.error());
-        const auto entry = entry_desc_of(*desc);
-        if (!entry) return failure(entry.error());
-        return composer->composer.rewire(handle_of(handle), *entry);
+        DARKROOM_TRY(needs("composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, read(given, "DarkroomEntryDesc"));
+        DARKROOM_TRY_VALUE(const auto entry, entry_desc_of(desc));
+        return composer->composer.rewire(handle_of(handle), entry);
     });
 }
 
 DarkroomResult darkroom_composer_clear(DarkroomComposer composer) {
     return call("darkroom_composer_clear", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         composer->composer.clear();
         return {};
     });
@@ -133,12 +124,10 @@ DarkroomResult darkroom_composer_clear(DarkroomComposer composer) {
 DarkroomResult darkroom_composer_define_table(DarkroomComposer composer, const DarkroomTable* given,
                                               uint32_t* resource) {
     return call("darkroom_composer_define_table", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "table", given, "resource", resource); !ok) return ok;
-        const auto table = read(given, "DarkroomTable");
-        if (!table) return failure(table.error());
-        const auto defined = composer->composer.define(table_of(*table));
-        if (!defined) return failure(defined.error());
-        *resource = defined->id;
+        DARKROOM_TRY(needs("composer", composer, "table", given, "resource", resource));
+        DARKROOM_TRY_VALUE(const auto table, read(given, "DarkroomTable"));
+        DARKROOM_TRY_VALUE(const auto defined, composer->composer.define(table_of(table)));
+        *resource = defined.id;
         return {};
     });
 }
@@ -146,19 +135,17 @@ DarkroomResult darkroom_composer_define_table(DarkroomComposer composer, const D
 DarkroomResult darkroom_composer_define_picture(DarkroomComposer composer, const DarkroomPicture* given,
                                                 uint32_t* resource) {
     return call("darkroom_composer_define_picture", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "picture", given, "resource", resource); !ok) return ok;
-        const auto picture = read(given, "DarkroomPicture");
-        if (!picture) return failure(picture.error());
-        const auto defined = composer->composer.define(picture_of(*picture));
-        if (!defined) return failure(defined.error());
-        *resource = defined->id;
+        DARKROOM_TRY(needs("composer", composer, "picture", given, "resource", resource));
+        DARKROOM_TRY_VALUE(const auto picture, read(given, "DarkroomPicture"));
+        DARKROOM_TRY_VALUE(const auto defined, composer->composer.define(picture_of(picture)));
+        *resource = defined.id;
         return {};
     });
 }
 
 DarkroomResult darkroom_composer_forget(DarkroomComposer composer, uint32_t resource) {
     return call("darkroom_composer_forget", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         composer->composer.forget({resource});
         return {};
     });
@@ -166,7 +153,7 @@ DarkroomResult darkroom_composer_forget(DarkroomComposer composer, uint32_t reso
 
 DarkroomResult darkroom_composer_resources(DarkroomComposer composer, uint32_t* resources, uint32_t* count) {
     return call("darkroom_composer_resources", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "count", count));
         std::vector<std::uint32_t> ids;
         for (const auto& [id, data] : composer->composer.resources()) ids.push_back(id);
         write_all<std::uint32_t>(ids, resources, count);
@@ -179,7 +166,7 @@ DarkroomHandle darkroom_handle_previous(DarkroomHandle handle) { return number_o
 
 DarkroomResult darkroom_composer_find(DarkroomComposer composer, const char* name, DarkroomHandle* handle) {
     return call("darkroom_composer_find", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "name", name, "handle", handle); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "name", name, "handle", handle));
         const auto found = composer->composer.find(name);
         if (!found) return user_error(fmt::format("entry '{}': there is none of that name", name));
         *handle = number_of(*found);
@@ -189,7 +176,7 @@ DarkroomResult darkroom_composer_find(DarkroomComposer composer, const char* nam
 
 DarkroomResult darkroom_composer_size(DarkroomComposer composer, uint32_t* count) {
     return call("darkroom_composer_size", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "count", count));
         *count = static_cast<std::uint32_t>(composer->composer.size());
         return {};
     });
@@ -197,7 +184,7 @@ DarkroomResult darkroom_composer_size(DarkroomComposer composer, uint32_t* count
 
 DarkroomResult darkroom_composer_entry(DarkroomComposer composer, uint32_t index, DarkroomHandle* handle) {
     return call("darkroom_composer_entry", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "handle", handle); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "handle", handle));
         if (index >= composer->composer.size())
             return user_error(fmt::format("index = {}: the stack has {} entries", index, composer->composer.size()));
         *handle = number_of(composer->composer.entry(index));
@@ -207,15 +194,15 @@ DarkroomResult darkroom_composer_entry(DarkroomComposer composer, uint32_t index
 
 DarkroomResult darkroom_composer_check(DarkroomComposer composer, DarkroomHandle handle) {
     return call("darkroom_composer_check", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.check(handle_of(handle));
     });
 }
 
 DarkroomResult darkroom_composer_info(DarkroomComposer composer, DarkroomHandle handle, DarkroomEffect* effect) {
     return call("darkroom_composer_info", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "effect", effect); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "effect", effect));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
         const EffectInfo& info = *composer->composer.info(handle_of(handle));
         const auto is_used = [&](const EffectInfo* custom) {
             for (std::size_t i = 0; i < composer->composer.size(); ++i)
@@ -236,8 +223,8 @@ DarkroomResult darkroom_composer_info(DarkroomComposer composer, DarkroomHandle 
 
 DarkroomResult darkroom_composer_desc(DarkroomComposer composer, DarkroomHandle handle, DarkroomEntryDesc* desc) {
     return call("darkroom_composer_desc", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", desc); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "desc", desc));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
         const EntryDesc& entry = *composer->composer.desc(handle_of(handle));
         const auto words = composer->composer.words(handle_of(handle));
         DarkroomEntryDesc out{};
@@ -264,8 +251,8 @@ DarkroomResult darkroom_composer_desc(DarkroomComposer composer, DarkroomHandle 
 DarkroomResult darkroom_composer_words(DarkroomComposer composer, DarkroomHandle handle, uint32_t* words,
                                        uint32_t* count) {
     return call("darkroom_composer_words", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "count", count));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
         write_all(composer->composer.words(handle_of(handle)), words, count);
         return {};
     });

@@ -33,14 +33,14 @@ using namespace darkroom::c;
 
 DarkroomResult darkroom_composer_set_enabled(DarkroomComposer composer, DarkroomHandle handle, VkBool32 is_enabled) {
     return call("darkroom_composer_set_enabled", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.set_enabled(handle_of(handle), is_enabled != 0);
     });
 }
 
 DarkroomResult darkroom_composer_set_opacity(DarkroomComposer composer, DarkroomHandle handle, float opacity) {
     return call("darkroom_composer_set_opacity", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         return composer->composer.set_opacity(handle_of(handle), opacity);
     });
 }
@@ -48,7 +48,7 @@ DarkroomResult darkroom_composer_set_opacity(DarkroomComposer composer, Darkroom
 DarkroomResult darkroom_composer_set_number(DarkroomComposer composer, DarkroomHandle handle, const char* parameter,
                                             double value) {
     return call("darkroom_composer_set_number", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "parameter", parameter); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "parameter", parameter));
         const EffectInfo* const info = composer->composer.info(handle_of(handle));
         const ParamInfo* const row = info == nullptr ? nullptr : info->parameters.find(parameter);
         if (row != nullptr && (row->kind == Kind::Toggle || row->kind == Kind::Choice || row->kind == Kind::Resource)) {
@@ -65,22 +65,21 @@ DarkroomResult darkroom_composer_set_number(DarkroomComposer composer, DarkroomH
 DarkroomResult darkroom_composer_set_text(DarkroomComposer composer, DarkroomHandle handle, const char* parameter,
                                           const char* value) {
     return call("darkroom_composer_set_text", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "parameter", parameter, "value", value); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "parameter", parameter, "value", value));
         Composer& stack = composer->composer;
-        const auto id = stack.parameter(handle_of(handle), parameter);
-        if (!id) return failure(id.error());
-        const ParamInfo& row = stack.info(handle_of(handle))->parameters.rows[id->row];
+        DARKROOM_TRY_VALUE(const auto id, stack.parameter(handle_of(handle), parameter));
+        const ParamInfo& row = stack.info(handle_of(handle))->parameters.rows[id.row];
         const std::string shown = fmt::format("{}.{}", stack.desc(handle_of(handle))->name, row.name);
         const auto parsed = parse_text(row, value);
         if (!parsed) return user_error(fmt::format("{} = '{}': {}", shown, value, parsed.error().text));
         const auto base = stack.words(handle_of(handle));
         std::vector<std::uint32_t> words(base.begin(), base.end());
-        if (auto ok = assign(row, words, *parsed, shown); !ok) return ok;
+        DARKROOM_TRY(assign(row, words, *parsed, shown));
         // A size in % sets the row of its reach, too.
         for (const ParamInfo& changed : stack.info(handle_of(handle))->parameters.rows) {
             const auto is = std::span<const std::uint32_t>(words).subspan(changed.word, changed.words);
             if (std::ranges::equal(is, stack.words(handle_of(handle)).subspan(changed.word, changed.words))) continue;
-            if (auto ok = stack.set(handle_of(handle), changed.name, is); !ok) return ok;
+            DARKROOM_TRY(stack.set(handle_of(handle), changed.name, is));
         }
         return {};
     });
@@ -89,20 +88,18 @@ DarkroomResult darkroom_composer_set_text(DarkroomComposer composer, DarkroomHan
 DarkroomResult darkroom_composer_set_words(DarkroomComposer composer, DarkroomHandle handle, const char* parameter,
                                            const uint32_t* words, uint32_t count) {
     return call("darkroom_composer_set_words", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "parameter", parameter); !ok) return ok;
-        const auto given = words_of(words, count);
-        if (!given) return failure(given.error());
-        return composer->composer.set(handle_of(handle), parameter, *given);
+        DARKROOM_TRY(needs("composer", composer, "parameter", parameter));
+        DARKROOM_TRY_VALUE(const auto given, words_of(words, count));
+        return composer->composer.set(handle_of(handle), parameter, given);
     });
 }
 
 DarkroomResult darkroom_composer_set_all(DarkroomComposer composer, DarkroomHandle handle, const uint32_t* words,
                                          uint32_t count) {
     return call("darkroom_composer_set_all", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
-        const auto given = words_of(words, count);
-        if (!given) return failure(given.error());
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
+        DARKROOM_TRY(words_of(words, count));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
         const EffectInfo& info = *composer->composer.info(handle_of(handle));
         if (count != info.parameters.words())
             return user_error(fmt::format("count = {}: {} has {} words", count, info.name, info.parameters.words()));
@@ -113,17 +110,16 @@ DarkroomResult darkroom_composer_set_all(DarkroomComposer composer, DarkroomHand
 DarkroomResult darkroom_composer_parameter(DarkroomComposer composer, DarkroomHandle handle, const char* name,
                                            DarkroomParameter* parameter) {
     return call("darkroom_composer_parameter", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "name", name, "parameter", parameter); !ok) return ok;
-        const auto id = composer->composer.parameter(handle_of(handle), name);
-        if (!id) return failure(id.error());
-        *parameter = number_of(*id);
+        DARKROOM_TRY(needs("composer", composer, "name", name, "parameter", parameter));
+        DARKROOM_TRY_VALUE(const auto id, composer->composer.parameter(handle_of(handle), name));
+        *parameter = number_of(id);
         return {};
     });
 }
 
 DarkroomResult darkroom_composer_set_float(DarkroomComposer composer, DarkroomParameter parameter, float value) {
     return call("darkroom_composer_set_float", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         const auto word = std::bit_cast<std::uint32_t>(value);
         return composer->composer.set(id_of(parameter), std::span(&word, 1));
     });
@@ -131,7 +127,7 @@ DarkroomResult darkroom_composer_set_float(DarkroomComposer composer, DarkroomPa
 
 DarkroomResult darkroom_composer_set_int(DarkroomComposer composer, DarkroomParameter parameter, int32_t value) {
     return call("darkroom_composer_set_int", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         const auto word = std::bit_cast<std::uint32_t>(value);
         return composer->composer.set(id_of(parameter), std::span(&word, 1));
     });
@@ -140,7 +136,7 @@ DarkroomResult darkroom_composer_set_int(DarkroomComposer composer, DarkroomPara
 DarkroomResult darkroom_composer_set_vector(DarkroomComposer composer, DarkroomParameter parameter, const float* values,
                                             uint32_t count) {
     return call("darkroom_composer_set_vector", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "values", values); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "values", values));
         if (count < 1 || count > 4) return user_error(fmt::format("count = {}: allowed is 1 to 4", count));
         std::array<std::uint32_t, 4> words{};
         std::memcpy(words.data(), values, count * sizeof(float));
@@ -151,16 +147,15 @@ DarkroomResult darkroom_composer_set_vector(DarkroomComposer composer, DarkroomP
 DarkroomResult darkroom_composer_set_override(DarkroomComposer composer, DarkroomHandle handle, const char* parameter,
                                               const char* owner, const uint32_t* words, uint32_t count) {
     return call("darkroom_composer_set_override", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "parameter", parameter, "owner", owner); !ok) return ok;
-        const auto given = words_of(words, count);
-        if (!given) return failure(given.error());
-        return composer->composer.set_override(handle_of(handle), parameter, owner, *given);
+        DARKROOM_TRY(needs("composer", composer, "parameter", parameter, "owner", owner));
+        DARKROOM_TRY_VALUE(const auto given, words_of(words, count));
+        return composer->composer.set_override(handle_of(handle), parameter, owner, given);
     });
 }
 
 DarkroomResult darkroom_composer_drop_overrides(DarkroomComposer composer, const char* owner) {
     return call("darkroom_composer_drop_overrides", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "owner", owner); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "owner", owner));
         composer->composer.drop_overrides(owner);
         return {};
     });
@@ -169,8 +164,8 @@ DarkroomResult darkroom_composer_drop_overrides(DarkroomComposer composer, const
 DarkroomResult darkroom_composer_current(DarkroomComposer composer, DarkroomHandle handle, uint32_t* words,
                                          uint32_t* count) {
     return call("darkroom_composer_current", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "count", count));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
         const auto now = composer->composer.current(handle_of(handle));
         write_all<std::uint32_t>(now, words, count);
         return {};
@@ -181,11 +176,10 @@ DarkroomResult darkroom_composer_values_at(DarkroomComposer composer, DarkroomHa
                                            const DarkroomCamera* given, uint32_t* words, uint32_t* count,
                                            VkBool32* is_enabled, float* opacity) {
     return call("darkroom_composer_values_at", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "count", count); !ok) return ok;
-        if (auto ok = composer->composer.check(handle_of(handle)); !ok) return ok;
-        const auto camera = camera_of(given);
-        if (!camera) return failure(camera.error());
-        const auto values = composer->composer.values_at(handle_of(handle), time, *camera);
+        DARKROOM_TRY(needs("composer", composer, "count", count));
+        DARKROOM_TRY(composer->composer.check(handle_of(handle)));
+        DARKROOM_TRY_VALUE(const auto camera, camera_of(given));
+        const auto values = composer->composer.values_at(handle_of(handle), time, camera);
         write_all<std::uint32_t>(values.words, words, count);
         if (is_enabled != nullptr) *is_enabled = values.is_enabled;
         if (opacity != nullptr) *opacity = values.opacity;
@@ -195,7 +189,7 @@ DarkroomResult darkroom_composer_values_at(DarkroomComposer composer, DarkroomHa
 
 DarkroomResult darkroom_composer_pre_roll(DarkroomComposer composer, double delta_time, uint32_t* frames) {
     return call("darkroom_composer_pre_roll", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "frames", frames); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "frames", frames));
         *frames = composer->composer.pre_roll(delta_time);
         return {};
     });
@@ -210,16 +204,14 @@ double darkroom_envelope(DarkroomEnvelope shape, double age, double duration) {
 
 DarkroomResult darkroom_composer_add_pulse(DarkroomComposer composer, const DarkroomPulseDesc* given) {
     return call("darkroom_composer_add_pulse", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given); !ok) return ok;
-        const auto desc = read(given, "DarkroomPulseDesc");
-        if (!desc) return failure(desc.error());
-        if (auto ok = needs("event", desc->event, "parameter", desc->parameter); !ok) return ok;
-        const auto kind = enumerator<Envelope>(desc->envelope, DARKROOM_ENVELOPE_SPRING, "envelope");
-        if (!kind) return failure(kind.error());
+        DARKROOM_TRY(needs("composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, read(given, "DarkroomPulseDesc"));
+        DARKROOM_TRY(needs("event", desc.event, "parameter", desc.parameter));
+        DARKROOM_TRY_VALUE(const auto kind, enumerator<Envelope>(desc.envelope, DARKROOM_ENVELOPE_SPRING, "envelope"));
         PulseDesc out{
-            .event = desc->event, .entry = handle_of(desc->entry), .parameter = desc->parameter, .envelope = *kind};
-        std::ranges::copy(desc->amount, out.amount.begin());
-        if (desc->duration != 0) out.duration = desc->duration;
+            .event = desc.event, .entry = handle_of(desc.entry), .parameter = desc.parameter, .envelope = kind};
+        std::ranges::copy(desc.amount, out.amount.begin());
+        if (desc.duration != 0) out.duration = desc.duration;
         return composer->composer.add_pulse(out);
     });
 }
@@ -227,7 +219,7 @@ DarkroomResult darkroom_composer_add_pulse(DarkroomComposer composer, const Dark
 DarkroomResult darkroom_composer_fire(DarkroomComposer composer, const char* event, const double* time,
                                       uint32_t* count) {
     return call("darkroom_composer_fire", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "event", event); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "event", event));
         const std::size_t fired =
             time == nullptr ? composer->composer.fire(event) : composer->composer.fire(event, *time);
         if (count != nullptr) *count = static_cast<std::uint32_t>(fired);
@@ -237,22 +229,19 @@ DarkroomResult darkroom_composer_fire(DarkroomComposer composer, const char* eve
 
 DarkroomResult darkroom_composer_add_layer(DarkroomComposer composer, const DarkroomLayerDesc* given) {
     return call("darkroom_composer_add_layer", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "desc", given); !ok) return ok;
-        const auto desc = read(given, "DarkroomLayerDesc");
-        if (!desc) return failure(desc.error());
-        if (auto ok = needs("name", desc->name); !ok) return ok;
-        LayerDesc out{.name = desc->name, .weight = desc->weight};
-        if (desc->has_distance != 0)
-            out.distance = LayerDistance{.near = desc->near_distance,
-                                         .far = desc->far_distance,
-                                         .point = {desc->point[0], desc->point[1], desc->point[2]}};
-        const auto values = read_all(desc->values, desc->value_count, "DarkroomLayerValue");
-        if (!values) return failure(values.error());
-        for (const DarkroomLayerValue& value : *values) {
-            const auto words = words_of(value.words, value.word_count);
-            if (!words) return failure(words.error());
-            if (auto ok = needs("parameter", value.parameter); !ok) return ok;
-            out.values.push_back({handle_of(value.entry), value.parameter, {words->begin(), words->end()}});
+        DARKROOM_TRY(needs("composer", composer, "desc", given));
+        DARKROOM_TRY_VALUE(const auto desc, read(given, "DarkroomLayerDesc"));
+        DARKROOM_TRY(needs("name", desc.name));
+        LayerDesc out{.name = desc.name, .weight = desc.weight};
+        if (desc.has_distance != 0)
+            out.distance = LayerDistance{.near = desc.near_distance,
+                                         .far = desc.far_distance,
+                                         .point = {desc.point[0], desc.point[1], desc.point[2]}};
+        DARKROOM_TRY_VALUE(const auto values, read_all(desc.values, desc.value_count, "DarkroomLayerValue"));
+        for (const DarkroomLayerValue& value : values) {
+            DARKROOM_TRY_VALUE(const auto words, words_of(value.words, value.word_count));
+            DARKROOM_TRY(needs("parameter", value.parameter));
+            out.values.push_back({handle_of(value.entry), value.parameter, {words.begin(), words.end()}});
         }
         return composer->composer.add_layer(out);
     });
@@ -260,7 +249,7 @@ DarkroomResult darkroom_composer_add_layer(DarkroomComposer composer, const Dark
 
 DarkroomResult darkroom_composer_set_layer_weight(DarkroomComposer composer, const char* name, float weight) {
     return call("darkroom_composer_set_layer_weight", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "name", name); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "name", name));
         return composer->composer.set_layer_weight(name, weight);
     });
 }
@@ -275,7 +264,7 @@ const char* darkroom_composer_layer_name(DarkroomComposer composer, uint32_t ind
 
 DarkroomResult darkroom_composer_remove_pulses(DarkroomComposer composer) {
     return call("darkroom_composer_remove_pulses", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer));
         composer->composer.remove_pulses();
         return {};
     });
@@ -283,7 +272,7 @@ DarkroomResult darkroom_composer_remove_pulses(DarkroomComposer composer) {
 
 DarkroomResult darkroom_composer_remove_layer(DarkroomComposer composer, const char* name) {
     return call("darkroom_composer_remove_layer", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "name", name); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "name", name));
         composer->composer.remove_layer(name);
         return {};
     });
@@ -292,7 +281,7 @@ DarkroomResult darkroom_composer_remove_layer(DarkroomComposer composer, const c
 DarkroomResult darkroom_composer_set_ui_constants(DarkroomComposer composer, const float constants[10],
                                                   uint32_t height) {
     return call("darkroom_composer_set_ui_constants", [&]() -> Result<> {
-        if (auto ok = needs("composer", composer, "constants", constants); !ok) return ok;
+        DARKROOM_TRY(needs("composer", composer, "constants", constants));
         DarkroomUiConstants out{};
         std::memcpy(&out, constants, sizeof out);
         return set_ui_constants(composer->composer, out, height);

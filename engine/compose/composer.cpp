@@ -102,10 +102,8 @@ Result<> check_resource(const ResourceData& data, std::uint64_t largest) {
     const auto& table = std::get<ColorTable>(data);
     if (auto ok = check_domain("a shaper", table.shaper_min, table.shaper_max); table.shaper_size > 0 && !ok) return ok;
     if (auto ok = check_domain("a cube", table.min, table.max); table.size > 0 && !ok) return ok;
-    if (auto ok = check_part("a shaper", table.shaper_size, longest, table.shaper.size(),
-                             std::uint64_t{3} * table.shaper_size);
-        !ok)
-        return ok;
+    DARKROOM_TRY(
+        check_part("a shaper", table.shaper_size, longest, table.shaper.size(), std::uint64_t{3} * table.shaper_size));
     return check_part("the edge of a cube", table.size, widest, table.cube.size(),
                       table.size > widest ? 0 : std::uint64_t{3} * table.size * table.size * table.size);
 }
@@ -124,7 +122,7 @@ Result<> check_mixing(const EntryDesc& desc) {
 
 Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> words) {
     for (const ParamInfo& row : entry.info->parameters.rows)
-        if (auto ok = check_value(entry, row, words.subspan(row.word, row.words)); !ok) return ok;
+        DARKROOM_TRY(check_value(entry, row, words.subspan(row.word, row.words)));
     return check_together(entry, words);
 }
 
@@ -188,7 +186,7 @@ Handle Composer::add(const EffectInfo& info, const void* parameters, const Entry
 
 Result<Handle> Composer::insert(Handle before, const EffectInfo& info, const void* parameters,
                                 const EntryDesc& desc) try {
-    if (auto ok = check(before); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check(before));
     const auto place = state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(before));
     return Handle{(*state_->stack.insert(place, state_->make_entry(info, parameters, desc)))->id};
 } catch (...) {
@@ -196,7 +194,7 @@ Result<Handle> Composer::insert(Handle before, const EffectInfo& info, const voi
 }
 
 Result<> Composer::remove(Handle handle) try {
-    if (auto ok = check(handle); !ok) return ok;
+    DARKROOM_TRY(check(handle));
     state_->stack.erase(state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(handle)));
     return {};
 } catch (...) {
@@ -204,9 +202,8 @@ Result<> Composer::remove(Handle handle) try {
 }
 
 Result<> Composer::move(Handle handle, Handle before) try {
-    if (auto ok = check(handle); !ok) return ok;
-    if (before.is_given())
-        if (auto ok = check(before); !ok) return ok;
+    DARKROOM_TRY(check(handle));
+    if (before.is_given()) DARKROOM_TRY(check(before));
     if (handle == before) return {};
     const auto at = [&](Handle which) {
         return state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(which));
@@ -222,9 +219,8 @@ Result<> Composer::move(Handle handle, Handle before) try {
 }
 
 Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* parameters) try {
-    auto entry = state_->checked(handle);
-    if (!entry) return failure(std::move(entry));
-    plan::Entry& old = **entry;
+    DARKROOM_TRY_VALUE(auto entry, state_->checked(handle));
+    plan::Entry& old = *entry;
     if (old.info == &info) {
         const void* const from = parameters != nullptr ? parameters : info.parameters.defaults.data();
         std::memcpy(old.base.data(), from, old.base.size() * 4);
@@ -243,14 +239,13 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
 }
 
 Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
-    auto entry = state_->checked(handle);
-    if (!entry) return failure(std::move(entry));
+    DARKROOM_TRY_VALUE(auto entry, state_->checked(handle));
     EntryDesc own = desc;
-    own.is_ui = (*entry)->desc.is_ui;
-    own.enabled = (*entry)->desc.enabled;
-    if (own.name.empty()) own.name = (*entry)->desc.name;
-    if (auto ok = check_mixing(own); !ok) return ok;
-    std::swap((*entry)->desc, own);
+    own.is_ui = entry->desc.is_ui;
+    own.enabled = entry->desc.enabled;
+    if (own.name.empty()) own.name = entry->desc.name;
+    DARKROOM_TRY(check_mixing(own));
+    std::swap(entry->desc, own);
     return {};
 } catch (...) {
     return caught("rewire");
@@ -259,8 +254,7 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
 void Composer::clear() { state_->stack.clear(); }
 
 Result<Resource> Composer::define(ResourceData data) try {
-    if (auto ok = check_resource(data, std::min(16384u, state_->context->traits.max_image_dimension)); !ok)
-        return failure(std::move(ok));
+    DARKROOM_TRY(check_resource(data, std::min(16384u, state_->context->traits.max_image_dimension)));
     const Resource out{next_id()};
     // Plans under way keep the map they began with.
     Resources all = *state_->resources;
@@ -311,18 +305,16 @@ std::span<const std::uint32_t> Composer::words(Handle handle) const {
 }
 
 Result<> Composer::set_enabled(Handle handle, bool enabled) try {
-    auto entry = state_->checked(handle);
-    if (!entry) return failure(std::move(entry));
-    State::for_all_of(**entry, [&](plan::Entry& one) { one.desc.enabled = enabled; });
+    DARKROOM_TRY_VALUE(auto entry, state_->checked(handle));
+    State::for_all_of(*entry, [&](plan::Entry& one) { one.desc.enabled = enabled; });
     return {};
 } catch (...) {
     return caught("set_enabled");
 }
 
 Result<> Composer::set_opacity(Handle handle, float opacity) try {
-    auto found = state_->checked(handle);
-    if (!found) return failure(std::move(found));
-    plan::Entry& entry = **found;
+    DARKROOM_TRY_VALUE(auto found, state_->checked(handle));
+    plan::Entry& entry = *found;
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.desc.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
@@ -338,25 +330,21 @@ Result<> Composer::set_opacity(Handle handle, float opacity) try {
 }
 
 Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) try {
-    auto found_entry = state_->checked(handle);
-    if (!found_entry) return failure(std::move(found_entry));
-    plan::Entry& entry = **found_entry;
-    const auto row = State::row(entry, parameter);
-    if (!row) return failure(row.error());
-    if (auto ok = check_value(entry, **row, words); !ok) return ok;
-    std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
+    DARKROOM_TRY_VALUE(auto found_entry, state_->checked(handle));
+    plan::Entry& entry = *found_entry;
+    DARKROOM_TRY_VALUE(const auto row, State::row(entry, parameter));
+    DARKROOM_TRY(check_value(entry, *row, words));
+    std::copy(words.begin(), words.end(), entry.base.begin() + row->word);
     return {};
 } catch (...) {
     return caught("set");
 }
 
 Result<> Composer::set(Handle handle, std::string_view parameter, double value) try {
-    auto found_entry = state_->checked(handle);
-    if (!found_entry) return failure(std::move(found_entry));
-    plan::Entry& entry = **found_entry;
-    const auto row = State::row(entry, parameter);
-    if (!row) return failure(row.error());
-    const ParamInfo& info = **row;
+    DARKROOM_TRY_VALUE(auto found_entry, state_->checked(handle));
+    plan::Entry& entry = *found_entry;
+    DARKROOM_TRY_VALUE(const auto row, State::row(entry, parameter));
+    const ParamInfo& info = *row;
     const bool is_allowed = value >= info.range.min && value <= info.range.max;
     if (is_allowed && info.kind == Kind::Float) {
         entry.base[info.word] = std::bit_cast<std::uint32_t>(static_cast<float>(value));
@@ -372,14 +360,12 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
 }
 
 Result<ParameterId> Composer::parameter(Handle handle, std::string_view name) const try {
-    auto found_entry = state_->checked(handle);
-    if (!found_entry) return failure(std::move(found_entry));
-    const plan::Entry& entry = **found_entry;
-    const auto row = State::row(entry, name);
-    if (!row) return failure(row.error());
+    DARKROOM_TRY_VALUE(auto found_entry, state_->checked(handle));
+    const plan::Entry& entry = *found_entry;
+    DARKROOM_TRY_VALUE(const auto row, State::row(entry, name));
     const std::size_t place = std::min<std::size_t>(state_->index_of(handle), 0xffff);
     return ParameterId{static_cast<std::uint32_t>(entry.history_owner),
-                       static_cast<std::uint16_t>(*row - entry.info->parameters.rows.data()),
+                       static_cast<std::uint16_t>(row - entry.info->parameters.rows.data()),
                        static_cast<std::uint16_t>(place)};
 } catch (...) {
     return caught("parameter");
@@ -397,7 +383,7 @@ Result<> Composer::set(ParameterId parameter, std::span<const std::uint32_t> wor
                         parameter.owner));
     plan::Entry& entry = **found;
     const ParamInfo& row = entry.info->parameters.rows[parameter.row];
-    if (auto ok = check_value(entry, row, words); !ok) return ok;
+    DARKROOM_TRY(check_value(entry, row, words));
     std::copy(words.begin(), words.end(), entry.base.begin() + row.word);
     return {};
 } catch (...) {
@@ -405,13 +391,12 @@ Result<> Composer::set(ParameterId parameter, std::span<const std::uint32_t> wor
 }
 
 Result<> Composer::set(Handle handle, const EffectInfo& info, const void* parameters) try {
-    auto found_entry = state_->checked(handle);
-    if (!found_entry) return failure(std::move(found_entry));
-    plan::Entry& entry = **found_entry;
+    DARKROOM_TRY_VALUE(auto found_entry, state_->checked(handle));
+    plan::Entry& entry = *found_entry;
     if (entry.info != &info)
         return user_error(fmt::format("{}: is not an entry of the effect {}", entry.desc.name, info.name));
     const std::span words(static_cast<const std::uint32_t*>(parameters), entry.base.size());
-    if (auto ok = check_values(entry, words); !ok) return ok;
+    DARKROOM_TRY(check_values(entry, words));
     std::copy(words.begin(), words.end(), entry.base.begin());
     return {};
 } catch (...) {
@@ -420,16 +405,14 @@ Result<> Composer::set(Handle handle, const EffectInfo& info, const void* parame
 
 Result<> Composer::set_override(Handle handle, std::string_view parameter, std::string_view owner,
                                 std::span<const std::uint32_t> words) try {
-    auto found_entry = state_->checked(handle);
-    if (!found_entry) return failure(std::move(found_entry));
-    plan::Entry& entry = **found_entry;
-    const auto row = State::row(entry, parameter);
-    if (!row) return failure(row.error());
-    if (auto ok = check_value(entry, **row, words); !ok) return ok;
+    DARKROOM_TRY_VALUE(auto found_entry, state_->checked(handle));
+    plan::Entry& entry = *found_entry;
+    DARKROOM_TRY_VALUE(const auto row, State::row(entry, parameter));
+    DARKROOM_TRY(check_value(entry, *row, words));
     const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(),
-                                    [&](const auto& o) { return o.owner == owner && o.word == (*row)->word; });
+                                    [&](const auto& o) { return o.owner == owner && o.word == row->word; });
     if (found == entry.overrides.end()) {
-        entry.overrides.push_back({.owner = std::string(owner), .word = (*row)->word, .words = (*row)->words});
+        entry.overrides.push_back({.owner = std::string(owner), .word = row->word, .words = row->words});
     } else {
         std::rotate(found, found + 1, entry.overrides.end());  // the last to set wins
     }

@@ -89,23 +89,23 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
     const auto [width, height] = compile_desc.max_extent;
     if (width == 0 || height == 0 || width > limit || height > limit)
         return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", width, height, limit, limit));
-    if (auto ok = check_target_extent(compile_desc.target_extent, limit); !ok) return failure(std::move(ok));
-    if (auto ok = compose::check_images(*context, compile_desc); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_target_extent(compile_desc.target_extent, limit));
+    DARKROOM_TRY(compose::check_images(*context, compile_desc));
     if (compile_desc.views == 0) return user_error("views = 0: allowed is 1 and more");
     Snapshot out{.desc = compile_desc};
     for (const auto& entry : stack) {
-        if (auto ok = check_values(*entry, entry->base); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(check_values(*entry, entry->base));
         out.values.push_back(*entry);
         out.values.back().resources = resources;
-        if (auto ok = check_resources(out.values.back()); !ok) return failure(std::move(ok));
-        if (auto ok = check_mixing(entry->desc); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(check_resources(out.values.back()));
+        DARKROOM_TRY(check_mixing(entry->desc));
         const OutputScale& scale = entry->desc.scale;
         if (scale.numerator == 0 || scale.denominator == 0)
             return user_error(fmt::format("stack entry '{}': scale {}/{}: allowed are numbers above 0",
                                           entry->desc.name, scale.numerator, scale.denominator));
         out.entries.push_back(entry);
     }
-    if (auto ok = check_names(out.values); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_names(out.values));
     return out;
 }
 
@@ -113,9 +113,7 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
     // One that cannot be made leaves what the next is to share.
     std::shared_ptr<compose::StackProgram> own = program;
     if (!own || !own->serves(snapshot.values, snapshot.desc)) {
-        auto planned = compose::plan_stack(*context, snapshot.values, snapshot.desc);
-        if (!planned) return failure(std::move(planned));
-        own = std::move(*planned);
+        DARKROOM_TRY_VALUE(own, compose::plan_stack(*context, snapshot.values, snapshot.desc));
     }
     auto made = compose::Chain::create(*context, *worker, histories,
                                        {.program = own,
@@ -198,15 +196,14 @@ std::unique_lock<std::mutex> Composer::State::stop_compiling() {
 }
 
 Result<Plan> Composer::plan(const CompileDesc& desc) const try {
-    auto snapshot = state_->snapshot(desc);
-    if (!snapshot) return failure(std::move(snapshot));
-    auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(*state_->context, desc.kernels));
-    if (!program) return failure(std::move(program));
-    auto compiled = program->graph.compile(plan::largest_extents(desc), graph::measure_on(*state_->context));
-    if (!compiled) return failure(std::move(compiled));
+    DARKROOM_TRY_VALUE(auto snapshot, state_->snapshot(desc));
+    DARKROOM_TRY_VALUE(auto program, plan::plan_program(snapshot.values, desc,
+                                                        compose::planner_traits(*state_->context, desc.kernels)));
+    DARKROOM_TRY_VALUE(auto compiled,
+                       program.graph.compile(plan::largest_extents(desc), graph::measure_on(*state_->context)));
     std::vector<const plan::Entry*> entries;
-    for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
-    Plan plan = plan::describe_program(*program, *compiled, desc, entries);
+    for (const plan::Entry& entry : snapshot.values) entries.push_back(&entry);
+    Plan plan = plan::describe_program(program, compiled, desc, entries);
     if (state_->context->is_assumed) plan.remarks.emplace_back(gpu::assumed_device_remark(*state_->context->profile));
     return plan;
 } catch (...) {
@@ -214,14 +211,12 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const try {
 }
 
 Result<Plan> Composer::State::compile(const CompileDesc& wanted) {
-    if (auto ok = check_device(); !ok) return failure(std::move(ok));
-    auto made = snapshot(wanted);
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(check_device());
+    DARKROOM_TRY_VALUE(auto made, snapshot(wanted));
     const auto lock = stop_compiling();
-    auto newer = make_chain(std::move(*made));
-    if (!newer) return failure(std::move(newer));
-    Plan plan = (*newer)->plan();
-    take(std::move(*newer));
+    DARKROOM_TRY_VALUE(auto newer, make_chain(std::move(made)));
+    Plan plan = newer->plan();
+    take(std::move(newer));
     return plan;
 }
 
@@ -269,7 +264,7 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
 }
 
 Result<> Composer::compile_later(const CompileDesc& desc) try {
-    if (auto ok = state_->check_device(); !ok) return ok;
+    DARKROOM_TRY(state_->check_device());
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     State& state = *state_;

@@ -3,10 +3,11 @@
 // What a public function makes of an exception that memory, threads, files or a caller's own function threw into it:
 // an error, because no exception may pass through a host's frame loop.
 
-#include <darkroom/result.hpp>
 #include <exception>
 #include <new>
 #include <string>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

@@ -64,7 +64,7 @@ Result<> check_regular(FileKind kind) {
 /// another file meanwhile.
 Result<> open_regular(const fs::path& path, OpenFile& file, FileFacts& facts) {
     if (const auto failed = facts_of(path, facts)) return open_failure(failed);
-    if (auto checked = check_regular(facts.kind); !checked) return checked;
+    DARKROOM_TRY(check_regular(facts.kind));
     if (const auto failed = file.open(path, OpenFile::How::Read)) return open_failure(failed);
     if (const auto failed = file.facts(facts)) return read_failure(failed);
     return check_regular(facts.kind);
@@ -73,7 +73,7 @@ Result<> open_regular(const fs::path& path, OpenFile& file, FileFacts& facts) {
 Result<std::vector<std::byte>> read_regular(const fs::path& path, const ReadFileOptions& options) {
     OpenFile file;
     FileFacts facts;
-    if (auto opened = open_regular(path, file, facts); !opened) return failure(std::move(opened));
+    DARKROOM_TRY(open_regular(path, file, facts));
     const auto most = static_cast<std::size_t>(std::min<std::uintmax_t>(options.max_size, PTRDIFF_MAX));
     const std::size_t room = options.takes_start ? std::max<std::size_t>(most, 16) : PTRDIFF_MAX;
 
@@ -88,8 +88,7 @@ Result<std::vector<std::byte>> read_regular(const fs::path& path, const ReadFile
         if (!is_end && size < content.size()) continue;
         if (!is_start_checked) {
             is_start_checked = true;
-            if (Result<> checked = options.check_start({content.data(), size}); !checked)
-                return failure(std::move(checked));
+            DARKROOM_TRY(options.check_start({content.data(), size}));
         }
         const auto known = std::max<std::uintmax_t>(size, facts.size);
         if (!options.takes_start && known > most)
@@ -139,11 +138,10 @@ Result<> write_file(const fs::path& path, std::span<const std::byte> content, bo
         if (const auto failed = file.open(path, OpenFile::How::Write)) return open_error(path, failed);
         return write_and_close(file, path, content);
     }
-    auto temporary = AtomicPath::beside(path);
-    if (!temporary) return failure(std::move(temporary));
-    if (const auto failed = file.open(temporary->path(), OpenFile::How::Truncate)) return open_error(path, failed);
-    if (auto written = write_and_close(file, path, content, waits_for_disk); !written) return written;
-    return temporary->commit();
+    DARKROOM_TRY_VALUE(auto temporary, AtomicPath::beside(path));
+    if (const auto failed = file.open(temporary.path(), OpenFile::How::Truncate)) return open_error(path, failed);
+    DARKROOM_TRY(write_and_close(file, path, content, waits_for_disk));
+    return temporary.commit();
 }
 
 Result<> check_own_file(const fs::path& path, FileOwner owner) {
@@ -160,18 +158,16 @@ Result<> check_own_file(const fs::path& path, FileOwner owner) {
 }
 
 Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
-    if (Result<> checked = check_own_file(path, owner); !checked) return checked;
-    auto temporary = AtomicPath::beside(path);
-    if (!temporary) return failure(std::move(temporary));
+    DARKROOM_TRY(check_own_file(path, owner));
+    DARKROOM_TRY_VALUE(auto temporary, AtomicPath::beside(path));
     // A link that was put there since leads to another folder or another name.
     const std::string own = fmt::format(".{}.", path.stem().string().substr(0, 100));
-    if (temporary->path().parent_path() != path.parent_path() ||
-        !temporary->path().filename().string().starts_with(own))
+    if (temporary.path().parent_path() != path.parent_path() || !temporary.path().filename().string().starts_with(own))
         return user_error(fmt::format("{}: is a link, which is not followed", printable(path.string())));
     OpenFile file;
-    if (const auto failed = file.open(temporary->path(), OpenFile::How::Truncate)) return open_error(path, failed);
-    if (auto written = write_and_close(file, path, content); !written) return written;
-    return temporary->commit();
+    if (const auto failed = file.open(temporary.path(), OpenFile::How::Truncate)) return open_error(path, failed);
+    DARKROOM_TRY(write_and_close(file, path, content));
+    return temporary.commit();
 }
 
 void AtomicPath::remove_on_signals() { remove_watched_files_on_signals(); }

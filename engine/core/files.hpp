@@ -6,13 +6,14 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <set>
 #include <span>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

@@ -25,7 +25,7 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
         return user_error(fmt::format("{}: {} bytes, the file of an effect has at most {}", printable(shown_name),
                                       text.size(), max_bytes));
     auto state = std::make_shared<State>();
-    if (auto ok = custom::read_description(*state, text, shown_name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(custom::read_description(*state, text, shown_name));
     state->info.owner = state;
     // Whoever calls these holds the state: they are members of what it keeps.
     const State* const own = state.get();
@@ -37,9 +37,8 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
 }
 
 Result<CustomEffect> CustomEffect::load(const std::string& file) try {
-    auto bytes = read_file(file, {.max_size = max_bytes});
-    if (!bytes) return failure(std::move(bytes));
-    return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
+    DARKROOM_TRY_VALUE(auto bytes, read_file(file, {.max_size = max_bytes}));
+    return parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
 } catch (...) {
     return caught("reading an effect");
 }

@@ -104,9 +104,8 @@ Result<std::optional<Define>> read_directive(std::string_view text, std::size_t 
     if (rest.size() > longest_value)
         return user_error(
             fmt::format("#define {}: a value of at most {} characters is allowed", printable(name), longest_value));
-    auto value = read_value(name, rest);
-    if (!value) return failure(std::move(value));
-    return Define{name, std::move(*value), line};
+    DARKROOM_TRY_VALUE(auto value, read_value(name, rest));
+    return Define{name, std::move(value), line};
 }
 
 std::size_t count_words_and_marks(std::string_view code) {
@@ -149,11 +148,10 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
                                ? values.find(token.text)
                                : values.end();
         if (token.kind == Token::Kind::Directive) {
-            auto define = read_directive(token.text, line);
-            if (!define) return failure(std::move(define));
-            if (*define) {
-                values[(*define)->name] = (*define)->value;
-                defines.push_back(std::move(**define));
+            DARKROOM_TRY_VALUE(auto define, read_directive(token.text, line));
+            if (define) {
+                values[define->name] = define->value;
+                defines.push_back(std::move(*define));
             } else {
                 out += token.text;
             }
@@ -168,7 +166,7 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
             return user_error(fmt::format("a statement of more than {} words and marks", longest_statement));
         line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
     }
-    if (auto ok = check_values(defines, line); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_values(defines, line));
     return out;
 }
 

@@ -23,7 +23,7 @@ constexpr std::array stored_formats{VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32
                                     VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32_SFLOAT};
 
 Result<> add_buffer(Description& out, FileBuffer buffer, std::string_view name, std::string_view count) {
-    if (auto ok = check_own_name(out, name); !ok) return ok;
+    DARKROOM_TRY(check_own_name(out, name));
     const auto number = parse_count(count, max_numbers);
     if (!number)
         return user_error(fmt::format("{}: {}: expected a count in [1, {}]", name,
@@ -67,15 +67,14 @@ Result<> take_outputs(Description& out, FileFunction& pass) {
     const std::vector<std::string_view> names = std::exchange(pass.outputs, {});
     for (const std::string_view name : names) {
         if (FileBuffer* const buffer = out.find_buffer(name)) {
-            if (auto ok = take_buffer(pass, *buffer); !ok) return ok;
+            DARKROOM_TRY(take_buffer(pass, *buffer));
             continue;
         }
-        const auto image = take_output(out, pass.name, name);
-        if (!image) return failure(image.error());
-        if (std::ranges::find(stored_formats, (*image)->format) == stored_formats.end())
+        DARKROOM_TRY_VALUE(const auto image, take_output(out, pass.name, name));
+        if (std::ranges::find(stored_formats, image->format) == stored_formats.end())
             return user_error(fmt::format("pass {} writes '{}': allowed for @compute is rgba16f, rgba32f, rgba8, r32f",
                                           pass.name, name));
-        pass.outputs.push_back((*image)->name);
+        pass.outputs.push_back(image->name);
     }
     if (pass.buffers.size() > max_buffers)
         return user_error(fmt::format("pass {} has {} buffers and values; at most {} are allowed", pass.name,
@@ -118,7 +117,7 @@ Result<> declare_buffer(Description& out, std::string_view text) {
     auto [name, rest] = halves(text);
     const std::string_view count = next_word(rest);
     const auto type = std::ranges::find(types, rest, &decltype(types)::value_type::first);
-    if (auto ok = check_name(name); !ok) return ok;
+    DARKROOM_TRY(check_name(name));
     if (type == types.end())
         return user_error(
             fmt::format("{}: type {}: allowed is {}", name, rest.empty() ? "nothing" : printable(rest), listed(types)));
@@ -130,7 +129,7 @@ Result<FileFunction> read_compute(Description& out, std::string_view text) {
     FileFunction pass{.name = next_word(head), .is_compute = true};
     const std::string_view workgroup = next_word(head), groups = next_word(head);
     const auto own = parse_workgroup(workgroup);
-    if (auto ok = check_name(pass.name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_name(pass.name));
     if (!own)
         return user_error(fmt::format("pass {}: workgroup {}: expected WIDTHxHEIGHT, at most {} together", pass.name,
                                       workgroup.empty() ? "nothing" : printable(workgroup), max_invocations));
@@ -142,10 +141,9 @@ Result<FileFunction> read_compute(Description& out, std::string_view text) {
                                           printable(number ? head : groups), max_invocations));
         pass.groups = *number;
     }
-    auto made =
-        read_arrow(out, std::move(pass), text, "@compute NAME WIDTHxHEIGHT: IMAGE ... -> IMAGE, BUFFER or VALUE ...");
-    if (!made) return made;
-    if (auto ok = take_outputs(out, *made); !ok) return failure(std::move(ok));
+    DARKROOM_TRY_VALUE(auto made, read_arrow(out, std::move(pass), text,
+                                             "@compute NAME WIDTHxHEIGHT: IMAGE ... -> IMAGE, BUFFER or VALUE ..."));
+    DARKROOM_TRY(take_outputs(out, made));
     return made;
 }
 

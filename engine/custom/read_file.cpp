@@ -40,15 +40,14 @@ std::string pascal_name(std::string_view snake) {
 
 Result<> read_effect(Description& out, std::string_view text) {
     if (!out.info.name.empty()) return user_error("a second @effect; a file holds one");
-    const auto halves = with_sentence(text);
-    if (!halves) return failure(halves.error());
-    if (auto ok = check_name(halves->head); !ok) return ok;
-    if (plan::is_function_name(halves->head) || pascal_name(halves->head) == "Curve")
-        return user_error(fmt::format("{}: a name of GLSL or of the kernels", halves->head));
-    if (find_effect(halves->head) != nullptr)
-        return user_error(fmt::format("{}: the name of an effect that is built in; choose another", halves->head));
-    out.info.name = out.keep(halves->head);
-    out.info.doc = out.keep(halves->rest);
+    DARKROOM_TRY_VALUE(const auto halves, with_sentence(text));
+    DARKROOM_TRY(check_name(halves.head));
+    if (plan::is_function_name(halves.head) || pascal_name(halves.head) == "Curve")
+        return user_error(fmt::format("{}: a name of GLSL or of the kernels", halves.head));
+    if (find_effect(halves.head) != nullptr)
+        return user_error(fmt::format("{}: the name of an effect that is built in; choose another", halves.head));
+    out.info.name = out.keep(halves.head);
+    out.info.doc = out.keep(halves.rest);
     return {};
 }
 
@@ -146,23 +145,22 @@ class FileReader {
     Result<> read() {
         line_ = 1;
         if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; allowed is text");
-        auto code = expand_code(text_, line_);
-        if (!code) return failure(std::move(code));
+        DARKROOM_TRY_VALUE(auto code, expand_code(text_, line_));
         constexpr std::string_view effect_word = "@effect ";
         std::string name;
-        for (std::size_t at = code->find(effect_word); name.empty() && at != std::string::npos;
-             at = code->find(effect_word, at + 1)) {
-            const std::size_t begin = code->rfind('\n', at) + 1;
-            const std::string_view line = std::string_view(*code).substr(begin, code->find('\n', at) - begin);
+        for (std::size_t at = code.find(effect_word); name.empty() && at != std::string::npos;
+             at = code.find(effect_word, at + 1)) {
+            const std::size_t begin = code.rfind('\n', at) + 1;
+            const std::string_view line = std::string_view(code).substr(begin, code.find('\n', at) - begin);
             if (!line.starts_with("//") || trimmed(line.substr(2, at - begin - 2)).size() != 0) continue;
             const std::string_view named = line.substr(at - begin + effect_word.size());
             name = trimmed(named.substr(0, named.find(':')));
         }
-        split_lines(out_.keep(check_name(name) ? with_own_names(*code, name) : *code));
-        if (auto ok = read_lines(); !ok) return ok;
+        split_lines(out_.keep(check_name(name) ? with_own_names(code, name) : code));
+        DARKROOM_TRY(read_lines());
         line_ = 1;
         if (out_.info.name.empty()) return user_error("no line `// @effect NAME: SENTENCE.` before the code");
-        if (auto ok = check_passes(out_); !ok) return ok;
+        DARKROOM_TRY(check_passes(out_));
         if (out_.result.empty() && !out_.end) {
             if (!out_.passes.empty())
                 return user_error(
@@ -172,10 +170,8 @@ class FileReader {
             out_.end = FileFunction{.line = 1};
         }
         struct_name_ = out_.keep(pascal_name(out_.info.name));
-        for (std::size_t i = 0; i < out_.passes.size(); ++i)
-            if (auto ok = add_pass_text(out_.passes[i], i + 1); !ok) return ok;
-        if (out_.end)
-            if (auto ok = add_end_text(*out_.end); !ok) return ok;
+        for (std::size_t i = 0; i < out_.passes.size(); ++i) DARKROOM_TRY(add_pass_text(out_.passes[i], i + 1));
+        if (out_.end) DARKROOM_TRY(add_end_text(*out_.end));
         out_.info.files = out_.files;
         out_.info.parameters = {struct_name_, out_.rows, out_.defaults};
         return {};
@@ -200,11 +196,10 @@ class FileReader {
                 const std::string_view word = next_word(comment);
                 if (word == pass_word || word == compute_word || word == end_word) {
                     is_head = false;
-                    if (auto ok = begin_function(word, comment); !ok) return ok;
+                    DARKROOM_TRY(begin_function(word, comment));
                     owner = word == end_word ? end_owner : out_.passes.size();
-                } else if (auto ok = read_head(word, comment, is_head); !ok) {
-                    return ok;
-                }
+                } else
+                    DARKROOM_TRY(read_head(word, comment, is_head));
             }
             is_head &= content.empty() || content.starts_with("//");
             owners_.push_back(owner);
@@ -215,16 +210,14 @@ class FileReader {
     Result<> begin_function(std::string_view word, std::string_view text) {
         if (word == end_word) {
             if (out_.end) return user_error("a second @end; an effect has one");
-            auto end = read_end(out_, text);
-            if (!end) return failure(std::move(end));
-            end->line = line_;
-            out_.end = std::move(*end);
+            DARKROOM_TRY_VALUE(auto end, read_end(out_, text));
+            end.line = line_;
+            out_.end = std::move(end);
             return {};
         }
-        auto pass = word == compute_word ? read_compute(out_, text) : read_pass(out_, text);
-        if (!pass) return failure(std::move(pass));
-        pass->line = line_;
-        out_.passes.push_back(std::move(*pass));
+        DARKROOM_TRY_VALUE(auto pass, word == compute_word ? read_compute(out_, text) : read_pass(out_, text));
+        pass.line = line_;
+        out_.passes.push_back(std::move(pass));
         return {};
     }
 
@@ -259,17 +252,17 @@ class FileReader {
 
     /// `form`: how its function is declared.
     Result<> add_text(FileFunction& function, const std::string& name, const std::string& form, std::string code) {
-        if (auto ok = read_shared(function, code, line_); !ok) return ok;
+        DARKROOM_TRY(read_shared(function, code, line_));
         line_ = function.line;
         if (!plan::calls_name(code, name)) return user_error(fmt::format("no function {}: expected `{}`", name, form));
-        if (auto ok = check_struct(code, name, struct_name_, form, line_); !ok) return ok;
-        if (auto ok = check_stage(code, function.is_compute, line_); !ok) return ok;
+        DARKROOM_TRY(check_struct(code, name, struct_name_, form, line_));
+        DARKROOM_TRY(check_stage(code, function.is_compute, line_));
         line_ = function.line;
         function.reads_light = out_.info.needs.contains(FrameImage::Shadows) && reads_light(code, out_.info.name);
         if (function.reads_light)
             code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,
                                code);
-        if (auto ok = read_uses(out_, function, code); !ok) return ok;
+        DARKROOM_TRY(read_uses(out_, function, code));
         function.shader = out_.keep(name + ".glsl");
         if (!function.name.empty())
             code += fmt::format("#line {} \"{}\"\n{}\n", function.line, shown_name_, main_of(function, name));

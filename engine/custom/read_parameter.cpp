@@ -97,13 +97,13 @@ Result<> add(Description& out, const ParamInfo& row, std::string_view text) {
     const auto value = parse_text(row, dense);
     if (!value) return user_error(fmt::format("{} = {}: {}", row.name, printable(text), value.error().text));
     out.defaults.resize(out.defaults.size() + row.words);
-    if (auto ok = assign(row, out.defaults, *value); !ok) return ok;
+    DARKROOM_TRY(assign(row, out.defaults, *value));
     out.rows.push_back(row);
     return {};
 }
 
 Result<> check_parameter_name(const Description& out, std::string_view name) {
-    if (auto ok = check_name(name); !ok) return ok;
+    DARKROOM_TRY(check_name(name));
     // They belong to the stack entry, and a look could not tell them apart.
     static constexpr std::string_view entry_keys[] = {"effect", "enabled", "name",   "input",   "source", "scale",
                                                       "format", "second",  "output", "opacity", "blend",  "mask"};
@@ -119,23 +119,22 @@ Result<> check_parameter_name(const Description& out, std::string_view name) {
 }  // namespace
 
 Result<> read_parameter(Description& out, std::string_view text) {
-    const auto halves = with_sentence(text);
-    if (!halves) return failure(halves.error());
-    const std::size_t equals = halves->head.find('=');
-    std::string_view head = halves->head.substr(0, equals);
+    DARKROOM_TRY_VALUE(const auto halves, with_sentence(text));
+    const std::size_t equals = halves.head.find('=');
+    std::string_view head = halves.head.substr(0, equals);
     const std::string_view kind_name = next_word(head), name = next_word(head);
     const auto kind = named(kinds, kind_name);
     if (!kind) return user_error(fmt::format("@param {}: allowed is {}", printable(kind_name), listed(kinds)));
-    if (auto ok = check_parameter_name(out, name); !ok) return ok;
+    DARKROOM_TRY(check_parameter_name(out, name));
     if (equals == std::string_view::npos || !head.empty())
         return user_error(fmt::format("{}: expected `@param {} {} = DEFAULT`", name, kind_name, name));
 
     ParamInfo row{.name = out.keep(name),
-                  .doc = out.keep(halves->rest),
+                  .doc = out.keep(halves.rest),
                   .kind = *kind,
                   .word = static_cast<std::uint32_t>(out.defaults.size()),
                   .words = words_of(*kind)};
-    Result<std::string_view> value = trimmed(halves->head.substr(equals + 1));
+    Result<std::string_view> value = trimmed(halves.head.substr(equals + 1));
     if (*kind == Kind::Choice)
         value = read_choices(out, row, *value);
     else if (*kind != Kind::Toggle)

@@ -99,7 +99,7 @@ Result<> read_table(FileImage& image, std::string_view text) {
 }
 
 Result<> check_image_name(Description& out, FileImage::Kind kind, std::string_view name) {
-    if (auto ok = check_own_name(out, name); !ok) return ok;
+    DARKROOM_TRY(check_own_name(out, name));
     const std::string previous = std::string(name) + std::string(previous_end);
     if (kind == FileImage::Kind::History && out.find_image(previous) != nullptr)
         return user_error(fmt::format("{}: declared twice", name));
@@ -149,7 +149,7 @@ Result<> read_inputs(Description& from, FileFunction& out, const std::string& re
             out.buffers.push_back({.name = buffer->name});
             continue;
         }
-        if (auto ok = check_input(from, reader, name); !ok) return ok;
+        DARKROOM_TRY(check_input(from, reader, name));
         out.inputs.push_back(from.keep(name));
         if (out.inputs.size() > max_inputs)
             return user_error(fmt::format("{} reads more than {} images", reader, max_inputs));
@@ -160,7 +160,7 @@ Result<> read_inputs(Description& from, FileFunction& out, const std::string& re
 }  // namespace
 
 Result<> check_own_name(Description& out, std::string_view name) {
-    if (auto ok = check_name(name); !ok) return ok;
+    DARKROOM_TRY(check_name(name));
     const bool is_reserved = name == "source" || name == "second" || name.ends_with(previous_end) ||
                              name.starts_with("frame_") || name.starts_with("shared_") || name.starts_with("darkroom_");
     if (is_reserved || plan::is_function_name(name))
@@ -178,11 +178,11 @@ FileImage* Description::find_image(std::string_view name) {
 Result<> read_image(Description& out, FileImage::Kind kind, std::string_view text) {
     const std::size_t colon = text.find(':');
     const std::string_view name = trimmed(text.substr(0, colon));
-    if (auto ok = check_image_name(out, kind, name); !ok) return ok;
+    DARKROOM_TRY(check_image_name(out, kind, name));
     std::string_view rest = colon == std::string_view::npos ? std::string_view{} : trimmed(text.substr(colon + 1));
     FileImage image{.name = out.keep(name), .kind = kind};
     if (kind == FileImage::Kind::Table) {
-        if (auto ok = read_table(image, rest); !ok) return ok;
+        DARKROOM_TRY(read_table(image, rest));
     } else {
         const std::string_view ratio = next_word(rest), format_name = next_word(rest);
         const auto scale = parse_ratio(ratio);
@@ -222,7 +222,7 @@ Result<> read_pre_roll(Description& out, std::string_view text) {
 
 Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string_view text, std::string_view usage) {
     const std::string_view name = pass.name;
-    if (auto ok = check_name(name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_name(name));
     if (name == "parameters" || name == "custom")
         return user_error(fmt::format("{}: is taken by the notation or by GLSL; choose another name", name));
     if (std::ranges::find(out.passes, name, &FileFunction::name) != out.passes.end())
@@ -233,10 +233,8 @@ Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string
     if (colon == std::string_view::npos || arrow == std::string_view::npos || arrow < colon)
         return user_error(fmt::format("pass {}: expected `{}`", name, usage));
     pass.name = out.keep(name);
-    if (auto ok =
-            read_inputs(out, pass, fmt::format("pass {}", name), trimmed(text.substr(colon + 1, arrow - colon - 1)));
-        !ok)
-        return failure(std::move(ok));
+    DARKROOM_TRY(
+        read_inputs(out, pass, fmt::format("pass {}", name), trimmed(text.substr(colon + 1, arrow - colon - 1))));
     for (std::string_view rest = trimmed(text.substr(arrow + 2)); !rest.empty();)
         pass.outputs.push_back(next_word(rest));
     if (pass.outputs.size() > max_outputs)
@@ -258,19 +256,18 @@ Result<FileImage*> take_output(Description& out, std::string_view pass, std::str
 
 Result<FileFunction> read_pass(Description& out, std::string_view text) {
     const std::string_view name = trimmed(text.substr(0, text.find(':')));
-    auto pass = read_arrow(out, {.name = name}, text, fmt::format("@pass {}: IMAGE IMAGE -> IMAGE", name));
-    if (!pass) return pass;
-    if (pass->outputs.empty()) pass->outputs.emplace_back();
+    DARKROOM_TRY_VALUE(auto pass,
+                       read_arrow(out, {.name = name}, text, fmt::format("@pass {}: IMAGE IMAGE -> IMAGE", name)));
+    if (pass.outputs.empty()) pass.outputs.emplace_back();
     const FileImage* first = nullptr;
-    for (std::string_view& output : pass->outputs) {
-        const auto image = take_output(out, pass->name, output);
-        if (!image) return failure(image.error());
-        output = (*image)->name;
-        if (first == nullptr) first = *image;
-        const OutputScale &a = first->ratio, &b = (*image)->ratio;
+    for (std::string_view& output : pass.outputs) {
+        DARKROOM_TRY_VALUE(const auto image, take_output(out, pass.name, output));
+        output = image->name;
+        if (first == nullptr) first = image;
+        const OutputScale &a = first->ratio, &b = image->ratio;
         if (a.numerator * b.denominator != b.numerator * a.denominator)
             return user_error(
-                fmt::format("pass {} writes '{}' and '{}', which differ in size", pass->name, first->name, output));
+                fmt::format("pass {} writes '{}' and '{}', which differ in size", pass.name, first->name, output));
     }
     return pass;
 }
@@ -279,7 +276,7 @@ Result<FileFunction> read_end(Description& out, std::string_view text) {
     if (!out.result.empty())
         return user_error(fmt::format("@end: the effect's picture is @result {}, it has no end", out.result));
     FileFunction end;
-    if (auto ok = read_inputs(out, end, "@end", text); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(read_inputs(out, end, "@end", text));
     if (std::ranges::find(end.inputs, "picture") != end.inputs.end())
         return user_error("@end reads 'picture': the end has it as `color` already");
     return end;

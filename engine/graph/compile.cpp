@@ -36,13 +36,13 @@ class Compiler {
         : declaration_(declaration), largest_(largest), solution_(std::make_unique<Solution>()) {}
 
     Result<std::unique_ptr<const Solution>> run(const Measure& measure) {
-        if (auto result = find_final_history(); !result) return failure(std::move(result));
+        DARKROOM_TRY(find_final_history());
         cull();
         take_over();
         make_slots();
         order_by_rounds();
-        if (auto result = use_slots(); !result) return failure(std::move(result));
-        if (auto result = place(measure); !result) return failure(std::move(result));
+        DARKROOM_TRY(use_slots());
+        DARKROOM_TRY(place(measure));
         find_past();
         return std::unique_ptr<const Solution>(std::move(solution_));
     }
@@ -333,8 +333,7 @@ class Compiler {
         for (std::uint32_t index = 0; index < solution_->slots.size(); ++index) {
             Slot& slot = solution_->slots[index];
             if (slot.kind == Slot::Kind::History) {  // its memory is the pool's; whether there can be one is asked here
-                if (auto measured = measure(slot.desc, slot.usage, largest_); !measured)
-                    return failure(std::move(measured));
+                DARKROOM_TRY(measure(slot.desc, slot.usage, largest_));
             }
             if (slot.kind != Slot::Kind::Transient) continue;
             if (slot.desc.is_buffer()) {
@@ -344,20 +343,19 @@ class Compiler {
                 solution_->buffer_bytes += (slot.size + 255) / 256 * 256;
                 continue;
             }
-            auto measured = measure(slot.desc, slot.usage, largest_);
-            if (!measured) return failure(std::move(measured));
-            solution_->memory_type_bits &= measured->memory_type_bits;
-            solution_->memory_alignment = std::max(solution_->memory_alignment, measured->alignment);
+            DARKROOM_TRY_VALUE(auto measured, measure(slot.desc, slot.usage, largest_));
+            solution_->memory_type_bits &= measured.memory_type_bits;
+            solution_->memory_alignment = std::max(solution_->memory_alignment, measured.alignment);
             if (solution_->memory_type_bits == 0) {
                 return machine_error(
                     fmt::format("image '{}' accepts the memory types {:#x}: none of them suits the other "
                                 "transient images as well",
-                                slot.desc.name, measured->memory_type_bits));
+                                slot.desc.name, measured.memory_type_bits));
             }
-            slot.size = measured->size;
-            solution_->transient_bytes_unaliased += measured->size;
-            intervals.push_back({.size = measured->size,
-                                 .alignment = std::max<VkDeviceSize>(measured->alignment, 1),
+            slot.size = measured.size;
+            solution_->transient_bytes_unaliased += measured.size;
+            intervals.push_back({.size = measured.size,
+                                 .alignment = std::max<VkDeviceSize>(measured.alignment, 1),
                                  .first = slot.first_pass,
                                  .last = slot.last_pass});
             owners.push_back(index);
@@ -393,10 +391,9 @@ class Compiler {
 }  // namespace
 
 Result<Compiled> Graph::compile(const Extents& largest, const Measure& measure) const {
-    if (auto result = validate(*declaration_, largest); !result) return failure(std::move(result));
-    auto solution = Compiler(*declaration_, largest).run(measure);
-    if (!solution) return failure(std::move(solution));
-    return Compiled(std::move(*solution));
+    DARKROOM_TRY(validate(*declaration_, largest));
+    DARKROOM_TRY_VALUE(auto solution, Compiler(*declaration_, largest).run(measure));
+    return Compiled(std::move(solution));
 }
 
 Compiled::Compiled(std::unique_ptr<const Solution> solution) : solution_(std::move(solution)) {}

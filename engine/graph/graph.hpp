@@ -11,12 +11,13 @@
 #include <vulkan/vulkan.h>
 #include <compare>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom::graph {
 

@@ -36,16 +36,16 @@ class Validator {
 
     Result<> run() const {
         for (const Image& image : declaration_.images) {
-            if (auto result = check_image(image.desc); !result) return result;
+            DARKROOM_TRY(check_image(image.desc));
         }
         if (!declaration_.first_error.empty()) return user_error(declaration_.first_error);
-        if (auto result = check_cycles(); !result) return result;
+        DARKROOM_TRY(check_cycles());
         for (std::uint32_t pass = 0; pass < declaration_.passes.size(); ++pass) {
-            if (auto result = check_pass(pass); !result) return result;
+            DARKROOM_TRY(check_pass(pass));
         }
         for (std::uint32_t version = 0; version < declaration_.versions.size(); ++version) {
             if (!declaration_.versions[version].is_kept) continue;
-            if (auto result = check_kept(version); !result) return result;
+            DARKROOM_TRY(check_kept(version));
         }
         return {};
     }
@@ -90,17 +90,17 @@ class Validator {
     Result<> check_pass(std::uint32_t pass) const {
         const PassRecord& record = declaration_.passes[pass];
         for (const Read& read : record.desc.reads) {
-            if (auto result = check_read(pass, read); !result) return result;
+            DARKROOM_TRY(check_read(pass, read));
         }
         for (const Version made : record.made) {
-            if (auto result = check_kept_content(pass, made.index); !result) return result;
+            DARKROOM_TRY(check_kept_content(pass, made.index));
         }
         return check_layouts(record);
     }
 
     /// Follows `read` through all its alternatives.
     Result<> check_read(std::uint32_t pass, const Read& read) const {
-        if (auto result = check_own_cycle(pass, read); !result) return result;
+        DARKROOM_TRY(check_own_cycle(pass, read));
         for (const Alternative& found :
              alternatives(declaration_, read.version.index, gate_of(pass), read.instead.index)) {
             if (found.version == none) {
@@ -116,8 +116,8 @@ class Validator {
                 return user_error(fmt::format("{} before pass '{}' wrote it", what, pass_name(producer)));
             }
             const MipMask mips = mip_mask(read.mips, image.desc.mip_levels);
-            if (auto result = check_overwritten(pass, found, mips, what); !result) return result;
-            if (auto result = check_content(found, mips, what); !result) return result;
+            DARKROOM_TRY(check_overwritten(pass, found, mips, what));
+            DARKROOM_TRY(check_content(found, mips, what));
         }
         return {};
     }
@@ -202,8 +202,8 @@ class Validator {
                     pass_name(declaration_.versions[found.version == none ? found.last : record.replaced].producer)));
             }
             const std::string what = describe(pass, record.replaced, found.version);
-            if (auto result = check_overwritten(pass, found, record.mips, what, made); !result) return result;
-            if (auto result = check_content(found, record.mips, what); !result) return result;
+            DARKROOM_TRY(check_overwritten(pass, found, record.mips, what, made));
+            DARKROOM_TRY(check_content(found, record.mips, what));
         }
         return {};
     }
@@ -256,8 +256,8 @@ class Validator {
             }
             const MipMask mips = all_mips(declaration_.image_of(found.version).desc.mip_levels);
             const auto end = static_cast<std::uint32_t>(declaration_.passes.size());
-            if (auto result = check_overwritten(end, found, mips, what); !result) return result;
-            if (auto result = check_content(found, mips, what); !result) return result;
+            DARKROOM_TRY(check_overwritten(end, found, mips, what));
+            DARKROOM_TRY(check_content(found, mips, what));
         }
         return {};
     }

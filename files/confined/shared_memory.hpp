@@ -4,10 +4,10 @@
 // page of it is ever missing where it is read.
 
 #include <cstddef>
-#include <darkroom/result.hpp>
 #include <span>
 
 #include "confined/descriptor.hpp"
+#include "core/try.hpp"
 
 namespace darkroom {
 

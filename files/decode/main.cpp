@@ -127,9 +127,8 @@ class Server {
             picture_ = {};
             picture_.bytes = Mapping(files[next++].number(), request.file_size, false);
             if (picture_.bytes.bytes().empty()) throw std::bad_alloc();
-            auto source = open(static_cast<FileKind>(request.kind), picture_.bytes.bytes(), request.max_threads);
-            if (!source) return failure(std::move(source));
-            picture_.source = std::move(*source);
+            DARKROOM_TRY_VALUE(picture_.source,
+                               open(static_cast<FileKind>(request.kind), picture_.bytes.bytes(), request.max_threads));
             picture_.number = request.source;
         }
         if (request.memory_size > 0) {

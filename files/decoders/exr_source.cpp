@@ -320,14 +320,13 @@ Result<> ExrSource::read(std::size_t number, std::uint32_t row, std::uint32_t ro
     }
     if (open_elsewhere_) {
         if (elsewhere_ == nullptr) {
-            auto opened = open_elsewhere_();
-            if (!opened) return failure(std::move(opened));
+            DARKROOM_TRY_VALUE(auto opened, open_elsewhere_());
             const auto is_same = [](const FilePart& a, const FilePart& b) {
                 return a.width == b.width && a.height == b.height && a.channels == b.channels;
             };
-            if (!std::ranges::equal((*opened)->parts(), parts_, is_same))
+            if (!std::ranges::equal(opened->parts(), parts_, is_same))
                 return user_error("cannot be read as OpenEXR: its decoder fails");
-            elsewhere_ = std::move(*opened);
+            elsewhere_ = std::move(opened);
         }
         return elsewhere_->read_rows(number, row, rows, places);
     }

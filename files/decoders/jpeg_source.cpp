@@ -104,7 +104,7 @@ class JpegSource final : public AttributedSource {
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
         auto out = std::make_unique<JpegSource>();
         out->file_ = bytes;
-        if (auto done = out->begin(); !done) return failure(std::move(done));
+        DARKROOM_TRY(out->begin());
         const JpegReader& jpeg = *out->jpeg_;
         if (jpeg.components != 1 && jpeg.components != 3 && !jpeg.is_ink)
             return user_error(fmt::format("has {} components: 1, 3 or 4 are read", jpeg.components));
@@ -143,8 +143,7 @@ class JpegSource final : public AttributedSource {
 
     Result<> read(std::size_t /*part*/, std::uint32_t row, std::uint32_t rows,
                   std::span<const SamplePlace> places) override {
-        if (has_failed_ || row < next_)
-            if (auto done = begin(); !done) return done;
+        if (has_failed_ || row < next_) DARKROOM_TRY(begin());
         has_failed_ = true;
         for (std::uint32_t y = 0; y < rows;) {
             const bool is_wanted = next_ >= row;
@@ -159,8 +158,7 @@ class JpegSource final : public AttributedSource {
                                      .channels = parts_[0].channels.size(),
                                      .bits = 8};
             for (const SamplePlace& place : places)
-                if (auto put = put_integers(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes); !put)
-                    return put;
+                DARKROOM_TRY(put_integers(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes));
             ++y;
         }
         has_failed_ = false;

@@ -3,13 +3,13 @@
 // A picture whose file has been opened and whose samples have not been read: what every decoder is to its users.
 
 #include <cstddef>
-#include <darkroom/result.hpp>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/try.hpp"
 #include "decoders/file_kind.hpp"
 
 namespace darkroom {

@@ -90,7 +90,7 @@ class PngSource final : public AttributedSource {
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
         auto out = std::make_unique<PngSource>();
         out->file_ = bytes;
-        if (auto done = out->begin(); !done) return failure(std::move(done));
+        DARKROOM_TRY(out->begin());
         const PngReader& png = *out->png_;
         FilePart part{
             .width = png.width, .height = png.height, .display_width = png.width, .display_height = png.height};
@@ -135,8 +135,7 @@ class PngSource final : public AttributedSource {
 
     Result<> read(std::size_t /*part*/, std::uint32_t row, std::uint32_t rows,
                   std::span<const SamplePlace> places) override {
-        if (has_failed_ || (!png_->is_interlaced && row < next_))
-            if (auto done = begin(); !done) return done;
+        if (has_failed_ || (!png_->is_interlaced && row < next_)) DARKROOM_TRY(begin());
         has_failed_ = !decode(row, rows);
         if (has_failed_)
             return user_error(fmt::format("damaged or truncated: rows {} to {} of {}: {}", row + 1, row + rows,
@@ -145,8 +144,7 @@ class PngSource final : public AttributedSource {
         for (std::uint32_t y = 0; y < rows; ++y) {
             const IntegerRow decoded{first + y * row_bytes(), png_->width, png_->channels, png_->bits};
             for (const SamplePlace& place : places)
-                if (auto put = put_integers(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes); !put)
-                    return put;
+                DARKROOM_TRY(put_integers(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes));
         }
         return {};
     }

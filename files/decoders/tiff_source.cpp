@@ -222,8 +222,7 @@ class TiffSource final : public AttributedSource {
             const std::size_t at = pixel_bytes() * parts_[0].width * ((row + y) % chunk_height_);
             const IntegerRow decoded{band_.data() + at, parts_[0].width, parts_[0].channels.size(), sample_bytes_ * 8};
             for (const SamplePlace& place : places)
-                if (auto put = put_row(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes); !put)
-                    return put;
+                DARKROOM_TRY(put_row(decoded, place, place.first + std::ptrdiff_t{y} * place.row_bytes));
         }
         return {};
     }
@@ -256,9 +255,8 @@ class TiffSource final : public AttributedSource {
 
 Result<std::unique_ptr<PictureSource>> open_tiff(std::span<const std::byte> bytes) {
     auto out = std::make_unique<TiffSource>(bytes);
-    const Result<bool> is_plain = out->describe();
-    if (!is_plain) return failure(is_plain.error());
-    if (!*is_plain) return std::unique_ptr<PictureSource>();
+    DARKROOM_TRY_VALUE(const bool is_plain, out->describe());
+    if (!is_plain) return std::unique_ptr<PictureSource>();
     return std::unique_ptr<PictureSource>(std::move(out));
 }
 

@@ -40,8 +40,7 @@ class WebpSource final : public PictureSource {
 
     Result<> read(std::size_t /*part*/, std::uint32_t row, std::uint32_t rows,
                   std::span<const SamplePlace> places) override {
-        if (samples_.empty())
-            if (auto done = decode(); !done) return done;
+        if (samples_.empty()) DARKROOM_TRY(decode());
         const std::size_t channels = parts_[0].channels.size(), width = parts_[0].width;
         for (const SamplePlace& place : places)
             for (std::uint32_t y = 0; y < rows; ++y) {

@@ -93,10 +93,9 @@ Result<std::unique_ptr<ColorChain>> guarded(const std::filesystem::path& configu
 Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path& configuration,
                                                      const std::string& space) {
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
-        const Result<Opened> opened = open_config(configuration);
-        if (!opened) return failure(opened.error());
-        const ocio::ConstConfigRcPtr& config = opened->config;
-        const Link& link = opened->link;
+        DARKROOM_TRY_VALUE(const Opened opened, open_config(configuration));
+        const ocio::ConstConfigRcPtr& config = opened.config;
+        const Link& link = opened.link;
         if (!config->getColorSpace(space.c_str()))
             return unknown("color space", space, names_of(config->getNumColorSpaces(), [&](int i) {
                                return config->getColorSpaceNameByIndex(i);
@@ -114,10 +113,9 @@ Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path
 Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& configuration,
                                                   const std::string& display, const std::string& view) {
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
-        const Result<Opened> opened = open_config(configuration);
-        if (!opened) return failure(opened.error());
-        const ocio::ConstConfigRcPtr& config = opened->config;
-        const Link& link = opened->link;
+        DARKROOM_TRY_VALUE(const Opened opened, open_config(configuration));
+        const ocio::ConstConfigRcPtr& config = opened.config;
+        const Link& link = opened.link;
         const Names displays = names_of(config->getNumDisplays(), [&](int i) { return config->getDisplay(i); });
         if (std::ranges::find(displays, display) == displays.end()) return unknown("display", display, displays);
         const Names views =

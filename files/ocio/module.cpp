@@ -183,7 +183,7 @@ Result<std::unique_ptr<ColorChain>> open(const std::filesystem::path& path) {
     try {
         // What it would tell is told by errors, on one line.
         ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);
-        if (Result<> checked = check_references(path); !checked) return failure(std::move(checked));
+        DARKROOM_TRY(check_references(path));
         return std::make_unique<Chain>(path);
     } catch (const std::exception& exception) {
         return failure(error_of(exception, path));

@@ -89,17 +89,16 @@ class Walk {
 
     Result<Total> total(const fs::path& file) {
         if (const auto known = totals_.find(file); known != totals_.end()) return known->second;
-        const auto text = read_file(file, {.max_size = max_bytes, .is_path_in_errors = false});
-        if (!text) return failure(text.error());
+        DARKROOM_TRY_VALUE(const auto text, read_file(file, {.max_size = max_bytes, .is_path_in_errors = false}));
         open_.push_back(file);
-        const Found found = references_of(*text);
+        const Found found = references_of(text);
         const bool is_first = open_.size() == 1;
         const auto place = [&](std::size_t line) {
             return is_first ? fmt::format("line {}", line)
                             : fmt::format("{}, line {}", printable(file.lexically_relative(folder_).string()), line);
         };
         if (found.wrong) return user_error(fmt::format("{}: {}", place(found.wrong->first), found.wrong->second));
-        Total out{.bytes = text->size()};
+        Total out{.bytes = text.size()};
         for (const auto& [line, name] : found.names) {
             const Result<Total> next = total_of(name);
             // Of one further down the place is told already.
@@ -122,12 +121,11 @@ class Walk {
 
   private:
     Result<Total> total_of(const std::string& name) {
-        Result<fs::path> file = file_of(folder_, name);
-        if (!file) return failure(std::move(file));
-        *file = file->lexically_normal();
-        if (std::ranges::find(open_, *file) != open_.end())
+        DARKROOM_TRY_VALUE(fs::path file, file_of(folder_, name));
+        file = file.lexically_normal();
+        if (std::ranges::find(open_, file) != open_.end())
             return user_error("refers to a table that refers back to this one");
-        return total(*file);
+        return total(file);
     }
 
     fs::path folder_;

@@ -161,7 +161,7 @@ class OiioSource final : public PictureSource {
         // The extension keeps readers content that also look at the name.
         if (!out->input_->open(fmt::format("memory.{}", format_of(kind)), out->spec_, config))
             return user_error(fmt::format("cannot be read as {}: {}", name_of(kind), out->reason()));
-        if (auto checked = flat(out->spec_); !checked) return failure(std::move(checked));
+        DARKROOM_TRY(flat(out->spec_));
         FilePart part{.channels = out->spec_.channelnames,
                       .width = static_cast<std::uint32_t>(out->spec_.width),
                       .height = static_cast<std::uint32_t>(out->spec_.height)};

@@ -63,7 +63,7 @@ class CubeParser {
         while (!text.empty()) {
             ++line_;
             const std::size_t end = std::min(text.find('\n'), text.size());
-            if (Result<> done = read_line(trimmed(text.substr(0, end))); !done) return failure(std::move(done));
+            DARKROOM_TRY(read_line(trimmed(text.substr(0, end))));
             text.remove_prefix(std::min(end + 1, text.size()));
         }
         return finish();
@@ -122,15 +122,11 @@ class CubeParser {
                                   printable(fmt::format("{}", fmt::join(values, " "))), min_table_size, most));
     }
     Result<> read_shaper_size(Words values) {
-        const Result<std::uint32_t> size = size_of(values, max_shaper_size);
-        if (!size) return failure(size.error());
-        out_.table.shaper_size = *size;
+        DARKROOM_TRY_VALUE(out_.table.shaper_size, size_of(values, max_shaper_size));
         return {};
     }
     Result<> read_cube_size(Words values) {
-        const Result<std::uint32_t> size = size_of(values, max_cube_size);
-        if (!size) return failure(size.error());
-        out_.table.size = *size;
+        DARKROOM_TRY_VALUE(out_.table.size, size_of(values, max_cube_size));
         return {};
     }
 
@@ -149,18 +145,15 @@ class CubeParser {
         return out;
     }
     Result<> read_domain(Words values, std::array<float, 3>& out) {
-        const auto numbers = numbers_of<3>(values);
-        if (!numbers) return failure(numbers.error());
-        out = *numbers;
+        DARKROOM_TRY_VALUE(out, numbers_of<3>(values));
         return {};
     }
     Result<> read_domain_min(Words values) { return read_domain(values, domain_min_); }
     Result<> read_domain_max(Words values) { return read_domain(values, domain_max_); }
     Result<> read_range(Words values, std::array<float, 3>& min, std::array<float, 3>& max) {
-        const auto numbers = numbers_of<2>(values);
-        if (!numbers) return failure(numbers.error());
-        min.fill((*numbers)[0]);
-        max.fill((*numbers)[1]);
+        DARKROOM_TRY_VALUE(const auto numbers, numbers_of<2>(values));
+        min.fill(numbers[0]);
+        max.fill(numbers[1]);
         return {};
     }
     Result<> read_shaper_range(Words values) {
@@ -174,14 +167,12 @@ class CubeParser {
     }
 
     Result<> read_row(Words values) {
-        if (rows_ == 0)
-            if (Result<> done = check_header(); !done) return done;
+        if (rows_ == 0) DARKROOM_TRY(check_header());
         if (rows_ == rows_wanted())
             return refuse(fmt::format("entry {}: {} asks for {}", rows_ + 1, size_text(), rows_wanted()));
-        const auto numbers = numbers_of<3>(values);
-        if (!numbers) return failure(numbers.error());
+        DARKROOM_TRY_VALUE(const auto numbers, numbers_of<3>(values));
         std::vector<float>& list = rows_ < out_.table.shaper_size ? out_.table.shaper : out_.table.cube;
-        list.insert(list.end(), numbers->begin(), numbers->end());
+        list.insert(list.end(), numbers.begin(), numbers.end());
         ++rows_;
         return {};
     }
@@ -234,8 +225,7 @@ class CubeParser {
     }
 
     Result<TableFile> finish() {
-        if (rows_ == 0)
-            if (Result<> done = check_header(); !done) return failure(std::move(done));
+        if (rows_ == 0) DARKROOM_TRY(check_header());
         if (rows_ < rows_wanted())
             return refuse(
                 fmt::format("the file ends after {} entries: {} asks for {}", rows_, size_text(), rows_wanted()));
@@ -265,9 +255,8 @@ void write_entries(fmt::memory_buffer& out, std::span<const float> entries) {
 Result<TableFile> parse_cube(std::string_view text, std::string_view shown) { return CubeParser(shown).parse(text); }
 
 Result<TableFile> read_cube(const std::filesystem::path& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_cube_file});
-    if (!bytes) return failure(bytes.error());
-    return parse_cube({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, printable(path.string()));
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, read_file(path, {.max_size = max_cube_file}));
+    return parse_cube({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, printable(path.string()));
 }
 
 Result<std::string> write_cube(const TableFile& file) {

@@ -5,11 +5,12 @@
 
 #include <cstdint>
 #include <darkroom/resource.hpp>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

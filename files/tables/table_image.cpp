@@ -33,9 +33,8 @@ Result<std::uint32_t> table_image_edge(std::uint32_t width, std::uint32_t height
 }
 
 Result<ColorTable> table_of_image(const ResourceImage& image) {
-    const Result<std::uint32_t> size = table_image_edge(image.width, image.height);
-    if (!size) return failure(size.error());
-    ColorTable table{.size = *size};
+    DARKROOM_TRY_VALUE(const std::uint32_t size, table_image_edge(image.width, image.height));
+    ColorTable table{.size = size};
     const std::size_t width = image.width;
     const bool is_row = image.width > image.height;
     const std::size_t edge = table.size;

@@ -5,7 +5,8 @@
 // (Eskil Steenberg, 2006) of level L, L^3 pixels a side, whose pixels are the entries of a cube of L^2, row by row.
 
 #include <darkroom/resource.hpp>
-#include <darkroom/result.hpp>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

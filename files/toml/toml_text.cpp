@@ -138,9 +138,8 @@ Result<std::optional<ParamValue>> value_for(const ParamInfo& row, const toml::no
     const auto* const text = node.as_string();
     const bool is_number = row.kind != Kind::Choice && row.kind != Kind::Toggle;
     if (!is_number || text == nullptr || parse_number(text->get())) return value_of(node);
-    Result<ParamValue> parsed = parse_text(row, text->get());
-    if (!parsed) return failure(std::move(parsed));
-    return std::optional<ParamValue>(std::move(*parsed));
+    DARKROOM_TRY_VALUE(ParamValue parsed, parse_text(row, text->get()));
+    return std::optional<ParamValue>(std::move(parsed));
 }
 
 std::string show(const toml::node& node) {

@@ -54,24 +54,22 @@ Result<std::unique_ptr<Bed>> Bed::create(Device& device, VkExtent2D extent) {
     gpu::Context& context = device.context();
     const VkExtent3D size{extent.width, extent.height, 1};
     const std::vector<std::uint16_t> pixels = make_scene(extent);
-    auto scene = upload(context, {.name = "scene", .format = scene_format, .extent = size, .usage = every_use},
-                        std::as_bytes(std::span(pixels)), VK_IMAGE_LAYOUT_GENERAL);
-    if (!scene) return failure(std::move(scene));
-    auto target =
-        gpu::Image::create(context, {.name = "target", .format = target_format, .extent = size, .usage = every_use});
-    if (!target) return failure(std::move(target));
-    auto done = gpu::submit_and_wait(context, "preparing the target", [&](VkCommandBuffer commands) {
-        gpu::transition(context, commands, *target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    });
-    if (!done) return failure(std::move(done));
-    return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(*scene), std::move(*target), {}});
+    DARKROOM_TRY_VALUE(auto scene,
+                       upload(context, {.name = "scene", .format = scene_format, .extent = size, .usage = every_use},
+                              std::as_bytes(std::span(pixels)), VK_IMAGE_LAYOUT_GENERAL));
+    DARKROOM_TRY_VALUE(
+        auto target,
+        gpu::Image::create(context, {.name = "target", .format = target_format, .extent = size, .usage = every_use}));
+    DARKROOM_TRY(gpu::submit_and_wait(context, "preparing the target", [&](VkCommandBuffer commands) {
+        gpu::transition(context, commands, target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    }));
+    return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(scene), std::move(target), {}});
 }
 
 Result<> Bed::make_world() {
     if (world != nullptr) return {};
-    auto made = World::create(context, extent);
-    if (!made) return failure(std::move(made));
-    world = std::make_unique<World>(std::move(*made));
+    DARKROOM_TRY_VALUE(auto made, World::create(context, extent));
+    world = std::make_unique<World>(std::move(made));
     return {};
 }
 
@@ -121,18 +119,17 @@ CompileDesc Bed::compile_desc(WorldUse use) const {
 
 Result<std::vector<std::byte>> Bed::read_target() const {
     const std::size_t bytes = std::size_t{extent.width} * extent.height * 4;
-    auto staging =
-        gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::Kind::Readback, "target");
-    if (!staging) return failure(std::move(staging));
+    DARKROOM_TRY_VALUE(auto staging, gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                         gpu::Memory::Kind::Readback, "target"));
     auto done = gpu::submit_and_wait(context, "reading the target", [&](VkCommandBuffer commands) {
         const VkBufferImageCopy copy = whole(extent);
         gpu::transition(context, commands, target, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-        context.vk.CmdCopyImageToBuffer(commands, target.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging->handle,
+        context.vk.CmdCopyImageToBuffer(commands, target.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle,
                                         1, &copy);
         gpu::transition(context, commands, target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
-    return std::vector<std::byte>(staging->memory.mapped, staging->memory.mapped + bytes);
+    return std::vector<std::byte>(staging.memory.mapped, staging.memory.mapped + bytes);
 }
 
 }  // namespace darkroom::bench

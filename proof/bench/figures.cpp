@@ -134,18 +134,16 @@ std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& 
 }
 
 Result<std::vector<Figure>> picture_figures(Bed& bed, const std::vector<Row>& rows) {
-    auto submitter = Submitter::create(bed.context);
-    if (!submitter) return failure(std::move(submitter));
+    DARKROOM_TRY_VALUE(auto submitter, Submitter::create(bed.context));
     const Row* const tail = find_row(rows, "tail/fused/auto");
     std::vector<Figure> figures;
     for (const Row& row : rows) {
         if (tail == nullptr || !row.name.starts_with(hand_written)) continue;
         std::array<std::vector<std::byte>, 2> pictures;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
-            if (const auto ran = (*submitter)->run((i == 0 ? *tail : row).record); !ran) return failure(ran.error());
-            auto picture = bed.read_target();
-            if (!picture) return failure(std::move(picture));
-            pictures[i] = std::move(*picture);
+            DARKROOM_TRY(submitter->run((i == 0 ? *tail : row).record));
+            DARKROOM_TRY_VALUE(auto picture, bed.read_target());
+            pictures[i] = std::move(picture);
         }
         int worst = 0;
         for (std::size_t i = 0; i < pictures[0].size(); ++i)
@@ -163,14 +161,13 @@ namespace {
 Result<std::vector<Figure>> compile_figures(Bed& bed) {
     const Stack stack = documented_stack();
     if (stack.empty()) return std::vector<Figure>{};
-    auto chain = compile_chain(bed, stack, {.world = WorldUse::WithoutNormals});
-    if (!chain) return failure(std::move(chain));
+    DARKROOM_TRY_VALUE(auto chain, compile_chain(bed, stack, {.world = WorldUse::WithoutNormals}));
     std::array<std::vector<double>, 2> milliseconds;
     for (int i = 0; i < 20; ++i) {
-        CompileDesc desc = chain->compiled_for;
+        CompileDesc desc = chain.compiled_for;
         if (i % 4 >= 2) desc.max_extent = {desc.max_extent.width / 2, desc.max_extent.height / 2};
         const auto start = std::chrono::steady_clock::now();
-        if (const auto made = chain->composer->compile(desc); !made) return failure(made.error());
+        DARKROOM_TRY(chain.composer->compile(desc));
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
         milliseconds[i % 2].push_back(time.count());
     }
@@ -181,14 +178,14 @@ Result<std::vector<Figure>> compile_figures(Bed& bed) {
 /// What a host pays at compile for the effects of the flat table that it keeps although they are off: the stack of all
 /// of them to that of a look's defaults, each in a new Composer, with warm caches.
 Result<std::vector<Figure>> kept_figures(Bed& bed) {
-    if (auto ok = bed.make_world(); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(bed.make_world());
     std::array<std::vector<double>, 2> milliseconds;
     for (int i = 0; i < 40; ++i) {
         const bool keeps_what_is_off = i % 2 != 0;
         Composer composer(bed.device, {.frames_in_flight = 1});
         fill(composer, flat_stack(keeps_what_is_off));
         const Stopwatch watch;
-        if (const auto made = composer.compile(bed.compile_desc(WorldUse::Full)); !made) return failure(made.error());
+        DARKROOM_TRY(composer.compile(bed.compile_desc(WorldUse::Full)));
         // The first of each warms the caches.
         if (i >= 2) milliseconds[i % 2].push_back(watch.elapsed().wall_ms);
     }
@@ -205,7 +202,7 @@ Result<> modulate(Composer& composer) {
         for (const ParamInfo& row : composer.info(entry)->parameters.rows) {
             if (row.kind != Kind::Float) continue;
             const std::string parameter(row.name);
-            if (auto ok = composer.add_pulse({.event = "hit", .entry = entry, .parameter = parameter}); !ok) return ok;
+            DARKROOM_TRY(composer.add_pulse({.event = "hit", .entry = entry, .parameter = parameter}));
             layer.values.push_back({entry, parameter, {composer.words(entry)[row.word]}});
         }
     }
@@ -217,78 +214,68 @@ Result<> modulate(Composer& composer) {
 
 Result<std::vector<Figure>> counted_figures(Bed& bed) {
     const Stack stack = default_stack();
-    auto fused = compile_chain(bed, stack);
-    if (!fused) return failure(std::move(fused));
-    auto unfused = compile_chain(bed, stack, {.fuse = false});
-    if (!unfused) return failure(std::move(unfused));
+    DARKROOM_TRY_VALUE(auto fused, compile_chain(bed, stack));
+    DARKROOM_TRY_VALUE(auto unfused, compile_chain(bed, stack, {.fuse = false}));
 
-    auto submitter = Submitter::create(bed.context);
-    if (!submitter) return failure(std::move(submitter));
+    DARKROOM_TRY_VALUE(auto submitter, Submitter::create(bed.context));
     // The first recording uploads tables, so it is not one of a frame loop.
     constexpr int recordings = 20;
     std::vector<double> microseconds;
     std::uint64_t allocations = 0;
     for (int i = 0; i <= recordings; ++i) {
-        auto commands = (*submitter)->begin();
-        if (!commands) return failure(std::move(commands));
+        DARKROOM_TRY_VALUE(auto commands, submitter->begin());
         const Frame frame = bed.frame();
         const std::uint64_t before = test::allocation_count();
-        const auto recorded = fused->composer->record(*commands, frame);
+        const auto recorded = fused.composer->record(commands, frame);
         const std::uint64_t made = test::allocation_count() - before;
         if (!recorded) return failure(recorded.error());
-        auto ended = bed.context.check(bed.context.vk.EndCommandBuffer(*commands), "ending a command buffer");
-        if (ended) ended = (*submitter)->submit();
-        if (ended) ended = (*submitter)->wait();
+        auto ended = bed.context.check(bed.context.vk.EndCommandBuffer(commands), "ending a command buffer");
+        if (ended) ended = submitter->submit();
+        if (ended) ended = submitter->wait();
         if (!ended) return failure(std::move(ended));
         if (i == 0) continue;
         allocations += made;
-        microseconds.push_back(fused->composer->record_microseconds());
+        microseconds.push_back(fused.composer->record_microseconds());
     }
     const auto own_time = [&]() -> Result<double> {
         std::vector<double> own;
         const NullCommands null(bed.context.vk);
         for (int i = 0; i < 10 * recordings; ++i) {
-            if (const auto recorded = fused->composer->record(VK_NULL_HANDLE, bed.frame()); !recorded)
-                return failure(recorded.error());
-            own.push_back(fused->composer->record_microseconds());
+            DARKROOM_TRY(fused.composer->record(VK_NULL_HANDLE, bed.frame()));
+            own.push_back(fused.composer->record_microseconds());
         }
         return median(own);
     };
-    const auto own = own_time();
-    if (!own) return failure(own.error());
-    if (auto ok = modulate(*fused->composer); !ok) return failure(std::move(ok));
-    const auto modulated = own_time();
-    if (!modulated) return failure(modulated.error());
-    auto again = compile_figures(bed);
-    if (!again) return failure(std::move(again));
-    const auto kept = kept_figures(bed);
-    if (!kept) return failure(kept.error());
+    DARKROOM_TRY_VALUE(const auto own, own_time());
+    DARKROOM_TRY(modulate(*fused.composer));
+    DARKROOM_TRY_VALUE(const auto modulated, own_time());
+    DARKROOM_TRY_VALUE(auto again, compile_figures(bed));
+    DARKROOM_TRY_VALUE(const auto kept, kept_figures(bed));
     std::vector<Figure> figures{
         {"record, default stack", median(microseconds), "us"},
-        {"record, default stack: without the driver", *own, "us", 15.0},
-        {"pulses: one and a layer on each number of that stack", *modulated - *own, "us"},
-        {"transient memory, default stack fused", megabytes(fused->plan.transient_bytes), "MB"},
-        {"transient memory, default stack unfused", megabytes(unfused->plan.transient_bytes), "MB"},
+        {"record, default stack: without the driver", own, "us", 15.0},
+        {"pulses: one and a layer on each number of that stack", modulated - own, "us"},
+        {"transient memory, default stack fused", megabytes(fused.plan.transient_bytes), "MB"},
+        {"transient memory, default stack unfused", megabytes(unfused.plan.transient_bytes), "MB"},
     };
     // The validation layer allocates in every call.
     if (bed.context.messenger == VK_NULL_HANDLE)
         figures.push_back({"record, default stack: allocations", static_cast<double>(allocations), "", 0.0});
-    if (unfused->plan.transient_bytes_unaliased > 0)
+    if (unfused.plan.transient_bytes_unaliased > 0)
         figures.push_back({"transient memory unfused / sum of its images",
-                           static_cast<double>(unfused->plan.transient_bytes) /
-                               static_cast<double>(unfused->plan.transient_bytes_unaliased),
+                           static_cast<double>(unfused.plan.transient_bytes) /
+                               static_cast<double>(unfused.plan.transient_bytes_unaliased),
                            "", 0.45});
     if (const Stack bloom = bloom_stack(); !bloom.empty()) {
-        auto alone = compile_chain(bed, bloom);
-        if (!alone) return failure(std::move(alone));
-        if (alone->plan.transient_bytes > 0)
+        DARKROOM_TRY_VALUE(auto alone, compile_chain(bed, bloom));
+        if (alone.plan.transient_bytes > 0)
             figures.push_back(
                 {"transient memory fused / that of bloom alone",
-                 static_cast<double>(fused->plan.transient_bytes) / static_cast<double>(alone->plan.transient_bytes),
-                 "", 1.0});
+                 static_cast<double>(fused.plan.transient_bytes) / static_cast<double>(alone.plan.transient_bytes), "",
+                 1.0});
     }
-    figures.insert(figures.end(), again->begin(), again->end());
-    figures.insert(figures.end(), kept->begin(), kept->end());
+    figures.insert(figures.end(), again.begin(), again.end());
+    figures.insert(figures.end(), kept.begin(), kept.end());
     return figures;
 }
 

@@ -68,38 +68,32 @@ bool is_asked_for(const Options& options, const std::vector<std::string>& names)
 Result<> add_sequence(const Options& options, Device& device, VkExtent2D extent, Report& report) {
     constexpr std::uint32_t max_rounds = 3;
     if (options.frames == 0 || !is_asked_for(options, sequence_row_names())) return {};
-    auto sequence = measure_sequence(device, {.extent = extent,
-                                              .frames = options.frames,
-                                              .rounds = std::min(options.rounds, max_rounds),
-                                              .device = options.device});
-    if (!sequence) return failure(std::move(sequence));
-    report.sequence = std::move(sequence->rows);
-    report.sequence_frames = sequence->frames;
-    report.figures.insert(report.figures.end(), sequence->figures.begin(), sequence->figures.end());
+    DARKROOM_TRY_VALUE(auto sequence, measure_sequence(device, {.extent = extent,
+                                                                .frames = options.frames,
+                                                                .rounds = std::min(options.rounds, max_rounds),
+                                                                .device = options.device}));
+    report.sequence = std::move(sequence.rows);
+    report.sequence_frames = sequence.frames;
+    report.figures.insert(report.figures.end(), sequence.figures.begin(), sequence.figures.end());
     return {};
 }
 
 Result<> measure_all(const Options& options, Bed& bed, Report& report) {
-    auto rows = make_rows(bed, options.filters);
-    if (!rows) return failure(std::move(rows));
-    if (auto ok = measure(bed, *rows, options.rounds); !ok) return ok;
-    report.figures = ratio_figures(bed.device, *rows);
-    if (auto ok = append(report.figures, picture_figures(bed, *rows)); !ok) return ok;
-    report.rows = std::move(*rows);
+    DARKROOM_TRY_VALUE(auto rows, make_rows(bed, options.filters));
+    DARKROOM_TRY(measure(bed, rows, options.rounds));
+    report.figures = ratio_figures(bed.device, rows);
+    DARKROOM_TRY(append(report.figures, picture_figures(bed, rows)));
+    report.rows = std::move(rows);
     if (options.has_passes) {
-        auto passes = measure_passes(bed, options.rounds);
-        if (!passes) return failure(std::move(passes));
-        report.passes = std::move(*passes);
+        DARKROOM_TRY_VALUE(report.passes, measure_passes(bed, options.rounds));
     }
-    if (auto ok = add_sequence(options, bed.device, bed.extent, report); !ok) return ok;
+    DARKROOM_TRY(add_sequence(options, bed.device, bed.extent, report));
     if (options.edits > 0 && is_asked_for(options, {std::string(edits_name)}))
-        if (auto ok = append(report.figures, edit_figures(bed.device, options.edits)); !ok) return ok;
-    if (is_asked_for(options, {"baked"}))
-        if (auto ok = append(report.figures, baked_figures(options.rounds)); !ok) return ok;
-    if (is_asked_for(options, {"headers"}))
-        if (auto ok = append(report.figures, header_figures(options.rounds)); !ok) return ok;
+        DARKROOM_TRY(append(report.figures, edit_figures(bed.device, options.edits)));
+    if (is_asked_for(options, {"baked"})) DARKROOM_TRY(append(report.figures, baked_figures(options.rounds)));
+    if (is_asked_for(options, {"headers"})) DARKROOM_TRY(append(report.figures, header_figures(options.rounds)));
     if (!options.filters.empty()) return {};
-    if (auto ok = append(report.figures, counted_figures(bed)); !ok) return ok;
+    DARKROOM_TRY(append(report.figures, counted_figures(bed)));
     return append(report.figures, start_figures(options.device, bed.extent, options.rounds));
 }
 

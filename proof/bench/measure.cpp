@@ -43,10 +43,8 @@ Result<std::unique_ptr<Submitter>> Submitter::create(gpu::Context& context) {
                                                     .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                     .commandBufferCount = 1};
     if (result == VK_SUCCESS) result = vk.AllocateCommandBuffers(context.device, &allocate_info, &made->commands_);
-    if (auto ok = context.check(result, "creating a command buffer"); !ok) return failure(std::move(ok));
-    auto timers = gpu::Timers::create(context, 1, 2);
-    if (!timers) return failure(std::move(timers));
-    made->timers_ = std::move(*timers);
+    DARKROOM_TRY(context.check(result, "creating a command buffer"));
+    DARKROOM_TRY_VALUE(made->timers_, gpu::Timers::create(context, 1, 2));
     return made;
 }
 
@@ -60,7 +58,7 @@ Result<VkCommandBuffer> Submitter::begin() {
                                               .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
     VkResult result = context_.vk.ResetCommandPool(context_.device, pool_, 0);
     if (result == VK_SUCCESS) result = context_.vk.BeginCommandBuffer(commands_, &begin_info);
-    if (auto ok = context_.check(result, "beginning a command buffer"); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(context_.check(result, "beginning a command buffer"));
     return commands_;
 }
 
@@ -80,13 +78,12 @@ Result<> Submitter::wait() {
 }
 
 Result<Sample> Submitter::run(const std::function<Result<>(VkCommandBuffer)>& record) {
-    auto commands = begin();
-    if (!commands) return failure(std::move(commands));
-    timers_.begin(*commands, 0);
-    timers_.mark(*commands, 0, 0);
-    if (auto ok = record(*commands); !ok) return failure(std::move(ok));
-    timers_.mark(*commands, 0, 1);
-    auto done = context_.check(context_.vk.EndCommandBuffer(*commands), "ending a command buffer");
+    DARKROOM_TRY_VALUE(auto commands, begin());
+    timers_.begin(commands, 0);
+    timers_.mark(commands, 0, 0);
+    DARKROOM_TRY(record(commands));
+    timers_.mark(commands, 0, 1);
+    auto done = context_.check(context_.vk.EndCommandBuffer(commands), "ending a command buffer");
     if (!done) return failure(std::move(done));
 
     const Stopwatch watch;
@@ -99,10 +96,9 @@ Result<Sample> Submitter::run(const std::function<Result<>(VkCommandBuffer)>& re
 }
 
 Result<> measure(Bed& bed, std::vector<Row>& rows, std::uint32_t rounds) {
-    auto submitter = Submitter::create(bed.context);
-    if (!submitter) return failure(std::move(submitter));
+    DARKROOM_TRY_VALUE(auto submitter, Submitter::create(bed.context));
     const auto run = [&](const Row& row) -> Result<Sample> {
-        if (row.record) return (*submitter)->run(row.record);
+        if (row.record) return submitter->run(row.record);
         const Stopwatch watch;
         row.host();
         return watch.elapsed();

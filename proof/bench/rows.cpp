@@ -37,9 +37,8 @@ std::string_view stage_name(gpu::Stage stage) { return stage == gpu::Stage::Comp
 Recipe chain_recipe(std::string name, Stack stack, const ChainDesc& desc) {
     return {.name = std::move(name),
             .make = [stack = std::move(stack), desc](Bed& bed, const std::string& row) -> Result<Row> {
-                auto chain = compile_chain(bed, stack, desc);
-                if (!chain) return failure(std::move(chain));
-                return chain_row(bed, row, *chain);
+                DARKROOM_TRY_VALUE(auto chain, compile_chain(bed, stack, desc));
+                return chain_row(bed, row, chain);
             }};
 }
 
@@ -58,18 +57,16 @@ Result<TableDesc> noise_tile() {
 Recipe hand_written_recipe(gpu::Stage stage) {
     return {.name = fmt::format("tail/hand-written/{}", stage_name(stage)),
             .make = [stage](Bed& bed, const std::string& row) -> Result<Row> {
-                const auto tile = noise_tile();
-                if (!tile) return failure(tile.error());
-                return kernel_row(bed, row, tail_spec(bed.context), stage, tail_words({}), &*tile);
+                DARKROOM_TRY_VALUE(const auto tile, noise_tile());
+                return kernel_row(bed, row, tail_spec(bed.context), stage, tail_words({}), &tile);
             }};
 }
 
 Recipe plain_recipe(std::string_view name, PlainPass pass, gpu::Stage stage) {
     return {.name = fmt::format("{}/{}", name, stage_name(stage)),
             .make = [pass, stage](Bed& bed, const std::string& row) -> Result<Row> {
-                const auto tile = noise_tile();
-                if (!tile) return failure(tile.error());
-                return plain_row(bed, row, pass, stage, {}, *tile);
+                DARKROOM_TRY_VALUE(const auto tile, noise_tile());
+                return plain_row(bed, row, pass, stage, {}, tile);
             }};
 }
 
@@ -127,14 +124,12 @@ Result<Row> floor_row(Bed& bed, const std::string& name) {
     };
     const VkDeviceSize size = VkDeviceSize{8} * bed.extent.width * bed.extent.height;
     const auto make = [&](gpu::Buffer& buffer, VkBufferUsageFlags usage) -> Result<> {
-        auto made = gpu::Buffer::create(bed.context, size, usage, gpu::Memory::Kind::Device, "floor");
-        if (!made) return failure(std::move(made));
-        buffer = std::move(*made);
+        DARKROOM_TRY_VALUE(buffer, gpu::Buffer::create(bed.context, size, usage, gpu::Memory::Kind::Device, "floor"));
         return {};
     };
     const auto buffers = std::make_shared<Buffers>();
-    if (auto ok = make(buffers->from, VK_BUFFER_USAGE_TRANSFER_SRC_BIT); !ok) return failure(std::move(ok));
-    if (auto ok = make(buffers->to, VK_BUFFER_USAGE_TRANSFER_DST_BIT); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(make(buffers->from, VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+    DARKROOM_TRY(make(buffers->to, VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     return Row{.name = name,
                .record = [&bed, buffers, size](VkCommandBuffer commands) -> Result<> {
                    const VkBufferCopy all{.size = size};
@@ -227,19 +222,17 @@ Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
         {"motion_blur", motion_blur_stack("half"), WorldUse::WithoutNormals},
         {"depth_of_field", depth_of_field_stack("half"), WorldUse::WithoutNormals},
         {"documented", documented_stack(), WorldUse::WithoutNormals}};
-    auto submitter = Submitter::create(bed.context);
-    if (!submitter) return failure(std::move(submitter));
+    DARKROOM_TRY_VALUE(auto submitter, Submitter::create(bed.context));
     std::vector<PassRow> out;
     for (const auto& [name, stack, world] : stacks) {
         if (stack.empty()) continue;
-        auto chain = compile_chain(bed, stack, {.has_timers = true, .world = world});
-        if (!chain) return failure(std::move(chain));
-        const Row row = chain_row(bed, std::string(name), *chain);
+        DARKROOM_TRY_VALUE(auto chain, compile_chain(bed, stack, {.has_timers = true, .world = world}));
+        const Row row = chain_row(bed, std::string(name), chain);
         std::vector<std::string> passes;
         std::vector<std::vector<double>> times;
         for (std::uint32_t round = 0; round <= rounds; ++round) {
-            if (const auto sample = (*submitter)->run(row.record); !sample) return failure(sample.error());
-            const std::span<const PassTime> measured = chain->composer->times().passes;
+            DARKROOM_TRY(submitter->run(row.record));
+            const std::span<const PassTime> measured = chain.composer->times().passes;
             if (round == 0) {
                 for (const PassTime& pass : measured) passes.emplace_back(pass.name);
                 times.resize(passes.size());

@@ -18,17 +18,16 @@ Result<gpu::Image> upload(gpu::Context& context, gpu::ImageInfo info, std::span<
     info.usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     auto image = gpu::Image::create(context, info);
     if (!image) return image;
-    auto staging = gpu::Buffer::create(context, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                       gpu::Memory::Kind::Upload, info.name);
-    if (!staging) return failure(std::move(staging));
-    std::ranges::copy(bytes, staging->memory.mapped);
+    DARKROOM_TRY_VALUE(auto staging, gpu::Buffer::create(context, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                         gpu::Memory::Kind::Upload, info.name));
+    std::ranges::copy(bytes, staging.memory.mapped);
     auto done = gpu::submit_and_wait(context, "uploading " + info.name, [&](VkCommandBuffer commands) {
         const VkImageAspectFlags aspect =
             info.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
         const VkBufferImageCopy copy{.imageSubresource = {.aspectMask = aspect, .layerCount = info.array_layers},
                                      .imageExtent = info.extent};
         gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        context.vk.CmdCopyBufferToImage(commands, staging.handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                         1, &copy);
         gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
     });

@@ -200,16 +200,14 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
     const auto make = [&](gpu::Image& image, const char* name, VkFormat format, VkExtent2D size, std::uint32_t layers,
                           const auto& numbers) -> Result<> {
         const bool has_storage = format != VK_FORMAT_D32_SFLOAT;
-        auto made = upload(
-            context,
-            {.name = name,
-             .format = format,
-             .extent = {size.width, size.height, 1},
-             .array_layers = layers,
-             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | (has_storage ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0)},
-            std::as_bytes(std::span(numbers)), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        if (!made) return failure(std::move(made));
-        image = std::move(*made);
+        DARKROOM_TRY_VALUE(image, upload(context,
+                                         {.name = name,
+                                          .format = format,
+                                          .extent = {size.width, size.height, 1},
+                                          .array_layers = layers,
+                                          .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                   (has_storage ? VkImageUsageFlags{VK_IMAGE_USAGE_STORAGE_BIT} : 0)},
+                                         std::as_bytes(std::span(numbers)), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
         return {};
     };
     auto done = make(world.depth, "depth", VK_FORMAT_D32_SFLOAT, extent, 1, seen.depth);

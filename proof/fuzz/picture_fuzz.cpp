@@ -61,10 +61,8 @@ Opened open(FileKind kind, std::span<const std::byte> bytes) {
 Result<std::vector<std::byte>> checked(FileKind kind, std::span<const std::byte> bytes) {
     if (kind == FileKind::Png) return check_png(bytes);
     if (kind == FileKind::Tiff) return check_tiff(bytes);
-    if (kind == FileKind::Jpeg)
-        if (Result<> done = check_jpeg(bytes); !done) return failure(std::move(done));
-    if (kind == FileKind::WebP)
-        if (auto done = check_webp(bytes); !done) return failure(std::move(done));
+    if (kind == FileKind::Jpeg) DARKROOM_TRY(check_jpeg(bytes));
+    if (kind == FileKind::WebP) DARKROOM_TRY(check_webp(bytes));
     return std::vector<std::byte>();
 }
 

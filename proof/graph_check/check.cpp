@@ -105,12 +105,12 @@ class Checker {
         ran_.assign(solution_.passes.size(), false);
         take_from_host();
         for (const Step& step : recording.steps) {
-            if (auto result = play_step(step); !result) return result;
+            DARKROOM_TRY(play_step(step));
         }
         for (const Barrier& barrier : recording.final_barriers) {
-            if (auto result = apply(barrier, "the end of the frame"); !result) return result;
+            DARKROOM_TRY(apply(barrier, "the end of the frame"));
         }
-        if (auto result = check_kept(); !result) return result;
+        DARKROOM_TRY(check_kept());
         return give_to_host();
     }
 
@@ -195,9 +195,9 @@ class Checker {
                 for (Event& event : level.events) make_known(barrier, event);
                 continue;
             }
-            if (auto result = check_transition(barrier, level, where, who); !result) return result;
+            DARKROOM_TRY(check_transition(barrier, level, where, who));
             if (discards) {
-                if (auto result = take_memory(barrier, where, who); !result) return result;
+                DARKROOM_TRY(take_memory(barrier, where, who));
                 level.content = {};
             }
             Event transition{.who = "the transition before " + who, .is_transition = true, .is_available = true};
@@ -221,7 +221,7 @@ class Checker {
             if (other == barrier.slot || rival.kind != Slot::Kind::Transient || rival.desc.is_buffer()) continue;
             if (rival.offset >= slot.offset + slot.size || slot.offset >= rival.offset + rival.size) continue;
             for (Level& level : levels_[other]) {
-                if (auto result = check_transition(barrier, level, where, who); !result) return result;
+                DARKROOM_TRY(check_transition(barrier, level, where, who));
                 level.layout = VK_IMAGE_LAYOUT_UNDEFINED;
                 level.content = {};
             }
@@ -333,14 +333,14 @@ class Checker {
         const std::string who = fmt::format("pass '{}'", pass.name);
         if (is_off(pass.gate)) return user_error(who + " is recorded although its gate is off");
         for (std::uint32_t i = 0; i < step.barrier_count; ++i) {
-            if (auto result = apply(recording_.barriers[step.first_barrier + i], who); !result) return result;
+            DARKROOM_TRY(apply(recording_.barriers[step.first_barrier + i], who));
         }
         for (const Read& read : pass.reads) {
-            if (auto result = play_read(read, who); !result) return result;
+            DARKROOM_TRY(play_read(read, who));
         }
         for (std::size_t i = 0; i < pass.writes.size(); ++i) {
             const std::uint32_t made = solution_.made[step.pass][i].index;
-            if (auto result = play_write(pass.writes[i], made, step.pass, who); !result) return result;
+            DARKROOM_TRY(play_write(pass.writes[i], made, step.pass, who));
         }
         ran_[step.pass] = true;
         return {};
@@ -355,10 +355,8 @@ class Checker {
         if (!layout) return user_error(layout.error().text);
         for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
             if ((mips >> mip & 1u) == 0) continue;
-            if (auto result = check_content(version, slot, mip, who); !result) return result;
-            if (auto result = access(slot, mip, who, stages_of(read.use), access_of(read.use), *layout); !result) {
-                return result;
-            }
+            DARKROOM_TRY(check_content(version, slot, mip, who));
+            DARKROOM_TRY(access(slot, mip, who, stages_of(read.use), access_of(read.use), *layout));
             add_events(levels_[slot][mip], who, stages_of(read.use), 0);
         }
         return {};
@@ -371,13 +369,9 @@ class Checker {
             if ((record.mips >> mip & 1u) == 0) continue;
             Level& level = levels_[slot][mip];
             if (record.keeps_content) {
-                if (auto result = check_content(version_for_reader(record.replaced), slot, mip, who); !result)
-                    return result;
+                DARKROOM_TRY(check_content(version_for_reader(record.replaced), slot, mip, who));
             }
-            if (auto result = access(slot, mip, who, stages_of(write.use), access_of(write.use), layout_of(write.use));
-                !result) {
-                return result;
-            }
+            DARKROOM_TRY(access(slot, mip, who, stages_of(write.use), access_of(write.use), layout_of(write.use)));
             level.events.clear();
             add_events(level, who, stages_of(write.use), access_set(access_of(write.use)) & write_bits);
             level.content = {Content::Kind::Pass, recording_.frame, pass};
@@ -392,8 +386,7 @@ class Checker {
             if (version == none || solution_.image_of(version).kind == Slot::Kind::History) continue;
             const std::uint32_t slot = solution_.image_of(version).slots[recording_.frame % 2];
             for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
-                if (auto result = check_content(version, slot, mip, "after the frame, the host"); !result)
-                    return result;
+                DARKROOM_TRY(check_content(version, slot, mip, "after the frame, the host"));
             }
         }
         return {};
@@ -404,11 +397,8 @@ class Checker {
         for (std::uint8_t index = 0; index < use_count; ++index) {
             const Use use{index};
             if ((solution_.past[slot].reads >> index & 1u) == 0) continue;
-            if (auto result = access(slot, mip, "the next frame", stages_of(use), access_of(use),
-                                     solution_.slots[slot].rest_layout);
-                !result) {
-                return result;
-            }
+            DARKROOM_TRY(
+                access(slot, mip, "the next frame", stages_of(use), access_of(use), solution_.slots[slot].rest_layout));
         }
         return {};
     }
@@ -425,7 +415,7 @@ class Checker {
                                                   static_cast<int>(slot.rest_layout)));
                 }
                 if (slot.kind == Slot::Kind::History || slot.kind == Slot::Kind::Lasting) {
-                    if (auto result = check_rest(index, mip); !result) return result;
+                    DARKROOM_TRY(check_rest(index, mip));
                 }
                 const VkImageLayout wanted =
                     host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED ? level.layout : host.final_layout;
@@ -442,11 +432,8 @@ class Checker {
                     return user_error(fmt::format("after the frame, the host does not wait for what {} did to {}",
                                                   event.who, place(index, mip)));
                 }
-                if (auto result =
-                        access(index, mip, "after the frame, the host", host.final_stages, host.final_access, wanted);
-                    !result) {
-                    return result;
-                }
+                DARKROOM_TRY(
+                    access(index, mip, "after the frame, the host", host.final_stages, host.final_access, wanted));
             }
         }
         return {};

@@ -44,8 +44,8 @@ Result<> check_outputs(const VerifyFlags& flags) {
     const fs::path folder = flags.folder, report = flags.report;
     const fs::path own = folder / report_name;
     if (!folder.empty()) {
-        if (Result<> done = check_folder(folder, MissingFolders::Made); !done) return done;
-        if (Result<> done = check_output(own, FileSet({})); !done) return done;
+        DARKROOM_TRY(check_folder(folder, MissingFolders::Made));
+        DARKROOM_TRY(check_output(own, FileSet({})));
     }
     if (report.empty()) return {};
     std::error_code error;
@@ -55,13 +55,12 @@ Result<> check_outputs(const VerifyFlags& flags) {
     // What is written in place, such as /dev/stdout, is not tried. A pipe may have nobody at its other end.
     if (fs::exists(report, error) && fs::is_other(report, error) && !fs::is_fifo(fs::symlink_status(report, error)))
         return {};
-    if (Result<> done = darkroom::check_own_file(report, darkroom::FileOwner::Anyone); !done) return done;
+    DARKROOM_TRY(darkroom::check_own_file(report, darkroom::FileOwner::Anyone));
     return check_output(report, FileSet({}));
 }
 
 Result<> write(const VerifyFlags& flags, const darkroom::verify::Report& report) {
-    if (!flags.folder.empty())
-        if (Result<> done = write_findings(flags.folder, report); !done) return done;
+    if (!flags.folder.empty()) DARKROOM_TRY(write_findings(flags.folder, report));
     if (flags.report.empty()) return {};
     const std::string text = json_of(report).dump(2) + "\n";
     return darkroom::write_file(flags.report, std::as_bytes(std::span(text)));

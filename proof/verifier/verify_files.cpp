@@ -138,46 +138,40 @@ Result<> write_resources(const fs::path& folder, const Subject& subject) {
             const darkroom::ResourceImage& image = brought.picture;
             Picture picture(image.width, image.height);
             picture.pixels = image.rgba;
-            Result<> done = row.is_picture ? darkroom::write_picture(folder / "picture.exr", picture)
-                                           : write_text(folder / "table.cube", cube_of(brought.table));
-            if (!done) return done;
+            DARKROOM_TRY(row.is_picture ? darkroom::write_picture(folder / "picture.exr", picture)
+                                        : write_text(folder / "table.cube", cube_of(brought.table)));
         }
     return {};
 }
 
 Result<> write_smallest(const fs::path& folder, const Finding& finding) {
     if (finding.smallest.steps.empty()) return {};
-    if (Result<> done = write_text(folder / "look.toml", darkroom::write_look(look_of(finding.smallest))); !done)
-        return done;
-    if (Result<> done = write_resources(folder, finding.smallest); !done) return done;
+    DARKROOM_TRY(write_text(folder / "look.toml", darkroom::write_look(look_of(finding.smallest))));
+    DARKROOM_TRY(write_resources(folder, finding.smallest));
     for (std::uint32_t number = 0; number < darkroom::verify::frame_count; ++number) {
         const darkroom::verify::SceneFrame scene(finding.smallest_extent, number);
-        if (Result<> done = darkroom::write_frame(folder / fmt::format("frame.{:04}.exr", number), frame_of(scene));
-            !done)
-            return done;
+        DARKROOM_TRY(darkroom::write_frame(folder / fmt::format("frame.{:04}.exr", number), frame_of(scene)));
     }
     return {};
 }
 
 Result<> write_finding(const fs::path& folder, const Finding& finding) {
-    if (Result<> done = make_folder(folder); !done) return done;
+    DARKROOM_TRY(make_folder(folder));
     if (finding.made.pixels.empty()) return {};
     const darkroom::WriteOptions whole{.samples = darkroom::SampleKind::Float, .alpha = true};
-    if (Result<> done = darkroom::write_picture(folder / "made.exr", picture_of(finding.made), whole); !done)
-        return done;
-    if (Result<> done = darkroom::write_picture(folder / "expected.exr", picture_of(finding.expected), whole); !done)
-        return done;
-    if (Result<> done = darkroom::write_picture(folder / "difference.png", map_of(finding)); !done) return done;
+    DARKROOM_TRY(darkroom::write_picture(folder / "made.exr", picture_of(finding.made), whole));
+    DARKROOM_TRY(darkroom::write_picture(folder / "expected.exr", picture_of(finding.expected), whole));
+    DARKROOM_TRY(darkroom::write_picture(folder / "difference.png", map_of(finding)));
     return write_smallest(folder, finding);
 }
 
 }  // namespace
 
 Result<> write_findings(const fs::path& folder, const darkroom::verify::Report& report) {
-    if (Result<> done = make_folder(folder); !done) return done;
+    DARKROOM_TRY(make_folder(folder));
     for (std::size_t i = 0; i < report.findings.size(); ++i) {
         const Finding& finding = report.findings[i];
-        if (Result<> done = write_finding(folder / folder_name(finding, i + 1), finding); !done) return done;
+        DARKROOM_TRY(write_finding(folder / folder_name(finding, i + 1), finding));
     }
     return write_text(folder / report_name, json_of(report).dump(2) + "\n");
 }

@@ -29,15 +29,14 @@ constexpr double filter_share = 2;
 
 Result<ReferenceImage> develop(const Subject& subject, const Brought& brought, std::span<const SceneFrame> frames) {
     Composer composer(Device::assumed(), {.max_threads = 0});
-    if (Result<> done = fill(subject, composer, brought); !done) return failure(std::move(done));
+    DARKROOM_TRY(fill(subject, composer, brought));
     ReferenceHistories histories;
     ReferenceImage out;
     for (const SceneFrame& frame : frames) {
         ReferenceChainInput input = frame.reference_input();
         input.histories = &histories;
-        Result<ReferenceChainOutput> made = run_reference(composer, input);
-        if (!made) return failure(std::move(made));
-        out = std::move(made->picture);
+        DARKROOM_TRY_VALUE(ReferenceChainOutput made, run_reference(composer, input));
+        out = std::move(made.picture);
     }
     return out;
 }

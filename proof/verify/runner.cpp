@@ -42,13 +42,11 @@ Result<std::unique_ptr<DeviceScene>> DeviceScene::create(Device& device, VkExten
     for (std::uint32_t number = 0; number < frame_count; ++number) out->frames_.emplace_back(extent, number, output);
     for (const SceneFrame& frame : out->frames_) {
         const DevelopInput input = frame.input();
-        if (Result<> done = out->uploads_.emplace_back().prepare(device.context(), input, layers_of(input)); !done)
-            return failure(std::move(done));
+        DARKROOM_TRY(out->uploads_.emplace_back().prepare(device.context(), input, layers_of(input)));
     }
-    const Result<> done = gpu::submit_and_wait(device.context(), "uploading a scene", [&](VkCommandBuffer commands) {
+    DARKROOM_TRY(gpu::submit_and_wait(device.context(), "uploading a scene", [&](VkCommandBuffer commands) {
         for (const FrameUpload& upload : out->uploads_) upload.record(device.context(), commands);
-    });
-    if (!done) return failure(done.error());
+    }));
     return out;
 }
 
@@ -67,20 +65,18 @@ Runner::Runner(Device& device, const DeviceScene& scene)
 Result<std::unique_ptr<Runner>> Runner::create(Device& device, const Subject& subject, const DeviceScene& scene,
                                                KernelStage stage) {
     std::unique_ptr<Runner> out(new Runner(device, scene));
-    if (Result<> done = out->prepare(subject, stage); !done) return failure(std::move(done));
+    DARKROOM_TRY(out->prepare(subject, stage));
     return out;
 }
 
 Result<> Runner::prepare(const Subject& subject, KernelStage stage) {
-    if (Result<> done = fill(subject, composer_); !done) return done;
+    DARKROOM_TRY(fill(subject, composer_));
     DevelopDesc desc = as_it_is;
     desc.kernels = stage;
     desc.target_extent = scene_.frames().back().output();
     CompileDesc compile = compile_desc_for(device_, scene_.frames().back().input(), desc);
     compile.encodes_target = false;
-    Result<Plan> made = composer_.compile(compile);
-    if (!made) return failure(std::move(made));
-    plan_ = std::move(*made);
+    DARKROOM_TRY_VALUE(plan_, composer_.compile(compile));
     has_history_ = std::ranges::any_of(plan_.images,
                                        [](const PlanImage& image) { return image.kind == PlanImage::Kind::History; });
     for (const Step& step : subject.steps) has_history_ |= step.info->touch == Touch::History || step.info->pre_roll;
@@ -88,17 +84,14 @@ Result<> Runner::prepare(const Subject& subject, KernelStage stage) {
     const VkExtent2D extent = output.width != 0      ? output
                               : plan_.passes.empty() ? plan_.extent
                                                      : plan_.passes.back().extent;
-    auto image =
-        gpu::Image::create(device_.context(), {.name = "target",
-                                               .format = target_format,
-                                               .extent = {extent.width, extent.height, 1},
-                                               .usage = compile.target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    if (!image) return failure(std::move(image));
-    target_ = std::move(*image);
-    auto readback = Readback::create(device_.context(), reference_to(target_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                                                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
-    if (!readback) return failure(std::move(readback));
-    readback_ = std::move(*readback);
+    DARKROOM_TRY_VALUE(target_, gpu::Image::create(device_.context(),
+                                                   {.name = "target",
+                                                    .format = target_format,
+                                                    .extent = {extent.width, extent.height, 1},
+                                                    .usage = compile.target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+    DARKROOM_TRY_VALUE(readback_,
+                       Readback::create(device_.context(), reference_to(target_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                                                        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)));
     return {};
 }
 
@@ -117,7 +110,7 @@ Result<> Runner::record(VkCommandBuffer commands, std::size_t number) {
     for (Light& light : lights) light.cascades.final_layout = light.cascades.layout;
     frame.lights = lights;
     frame.target = reference_to(target_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    if (Result<> done = composer_.record(commands, frame); !done) return done;
+    DARKROOM_TRY(composer_.record(commands, frame));
     readback_->record(commands);
     return {};
 }

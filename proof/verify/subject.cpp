@@ -10,6 +10,8 @@
 #include <random>
 #include <utility>
 
+#include "core/try.hpp"
+
 namespace darkroom::verify {
 
 namespace {
@@ -278,10 +280,9 @@ Result<> fill(const Subject& subject, Composer& composer, const Brought& brought
         Words words = step.words;
         for (const ParamInfo& row : step.info->parameters.rows) {
             if (row.kind != Kind::Resource) continue;
-            const Result<Resource> made =
-                row.is_picture ? composer.define(brought.picture) : composer.define(brought.table);
-            if (!made) return failure(made.error());
-            words[row.word] = made->id;
+            DARKROOM_TRY_VALUE(const Resource made,
+                               row.is_picture ? composer.define(brought.picture) : composer.define(brought.table));
+            words[row.word] = made.id;
         }
         EntryDesc desc{.is_ui = step.info->is_ui};
         if (step.info->has_second && !step.info->needs.contains(FrameImage::Ui)) desc.second = scene_alpha;

@@ -68,9 +68,8 @@ class Verifying {
         total_ = all.size() + usual * (options_.sizes.size() - std::min<std::size_t>(options_.sizes.size(), 1));
         for (std::size_t i = 0; i < options_.sizes.size(); ++i) {
             for (const Subject& subject : all)
-                if (i == 0 || is_usual(subject))
-                    if (Result<> done = try_subject(subject, options_.sizes[i]); !done) return failure(std::move(done));
-            if (Result<> done = try_together(); !done) return failure(std::move(done));
+                if (i == 0 || is_usual(subject)) DARKROOM_TRY(try_subject(subject, options_.sizes[i]));
+            DARKROOM_TRY(try_together());
         }
         report_.kernels = context_.kernels->counters().built - built;
         report_.seconds = seconds();
@@ -117,10 +116,7 @@ class Verifying {
         std::unique_ptr<DeviceScene>& scene = scenes_[{extent.width, extent.height, is_larger}];
         if (scene == nullptr) {
             const VkExtent2D larger{extent.width * 3 / 2, extent.height * 3 / 2};
-            Result<std::unique_ptr<DeviceScene>> made =
-                DeviceScene::create(device_, extent, is_larger ? larger : VkExtent2D{});
-            if (!made) return failure(std::move(made));
-            scene = std::move(*made);
+            DARKROOM_TRY_VALUE(scene, DeviceScene::create(device_, extent, is_larger ? larger : VkExtent2D{}));
         }
         return scene.get();
     }
@@ -146,8 +142,7 @@ class Verifying {
     Result<> try_subject(const Subject& subject, VkExtent2D extent) {
         if (listener_.begins) listener_.begins(subject.name, done_, total_);
         ++done_;
-        const Result<const DeviceScene*> scene = scene_of(subject, extent);
-        if (!scene) return failure(scene.error());
+        DARKROOM_TRY_VALUE(const DeviceScene* const scene, scene_of(subject, extent));
         std::optional<Expected> expected;
         for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
             const Form form{.stage = stage, .is_lean = false, .extent = extent};
@@ -156,7 +151,7 @@ class Verifying {
                 report_.not_tried.push_back(fmt::format("{}, {}", subject.name, text_of(form)));
                 continue;
             }
-            Result<> done = try_stage(subject, **scene, form, expected);
+            Result<> done = try_stage(subject, *scene, form, expected);
             if (done) continue;
             if (done.error().code == ErrorCode::DeviceLost) return done;
             // Values that do not go together are no fault of a device.
@@ -170,13 +165,11 @@ class Verifying {
     }
 
     Result<> try_stage(const Subject& subject, const DeviceScene& scene, Form form, std::optional<Expected>& expected) {
-        Result<std::unique_ptr<Runner>> made = Runner::create(device_, subject, scene, form.stage);
-        if (!made) return failure(std::move(made));
-        Runner& runner = **made;
+        DARKROOM_TRY_VALUE(std::unique_ptr<Runner> made, Runner::create(device_, subject, scene, form.stage));
+        Runner& runner = *made;
         if (!expected) {
-            Result<Expectation> all = expectation_of(subject, runner, scene, few_moved);
-            if (!all) return failure(std::move(all));
-            expected = Expected{std::move(*all)};
+            DARKROOM_TRY_VALUE(Expectation all, expectation_of(subject, runner, scene, few_moved));
+            expected = Expected{std::move(all)};
             if (has_same_bits(expected->all.picture, scene.frames().back().color()))
                 report_.unchanged.push_back(
                     fmt::format("{}, {}x{}", subject.name, form.extent.width, form.extent.height));
@@ -184,17 +177,15 @@ class Verifying {
         ReferenceImage lean;
         for (form.is_lean = false;; form.is_lean = true) {
             if (form.is_lean) runner.make_lean();
-            Result<ReferenceImage> picture = runner.run();
-            if (!picture) return failure(std::move(picture));
+            DARKROOM_TRY_VALUE(ReferenceImage picture, runner.run());
             ++report_.pictures;
-            if (Result<> done = judge(runner, subject, scene, form, *picture, *expected); !done) return done;
-            lean = std::move(*picture);
+            DARKROOM_TRY(judge(runner, subject, scene, form, picture, *expected));
+            lean = std::move(picture);
             if (form.is_lean) break;
         }
-        const Result<ReferenceImage> again = runner.run();
-        if (!again) return failure(again.error());
-        compare_bits(Finding::Kind::Repeat, runner, subject, form, *again, lean);
-        tried_.push_back({std::move(*made), subject, form, std::move(lean)});
+        DARKROOM_TRY_VALUE(const ReferenceImage again, runner.run());
+        compare_bits(Finding::Kind::Repeat, runner, subject, form, again, lean);
+        tried_.push_back({std::move(made), subject, form, std::move(lean)});
         return {};
     }
 
@@ -222,9 +213,8 @@ class Verifying {
                    const ReferenceImage& picture, Expected& expected) {
         Difference worst = difference(picture, expected.all);
         if (worst.pixels > 0 && expected.moved < many_moved) {
-            Result<Expectation> all = expectation_of(subject, runner, scene, many_moved);
-            if (!all) return failure(std::move(all));
-            expected = {std::move(*all), many_moved};
+            DARKROOM_TRY_VALUE(Expectation all, expectation_of(subject, runner, scene, many_moved));
+            expected = {std::move(all), many_moved};
             worst = difference(picture, expected.all);
         }
         if (worst.pixels == 0) return {};

@@ -130,7 +130,7 @@ struct Developer::State {
     Slot& next_slot() { return slots[(oldest + in_flight) % slots.size()]; }
 
     Result<> check(VkExtent2D extent, std::span<const UploadLayer> layers) const {
-        if (Result<> done = check_extent(context(), extent); !done) return done;
+        DARKROOM_TRY(check_extent(context(), extent));
         for (const UploadLayer& layer : layers) {
             const auto [width, height] = layer.extent;
             const std::size_t pixels = std::size_t{width} * height;
@@ -178,9 +178,7 @@ struct Developer::State {
         if (compiled && compiled_composer == &composer && is_same(*compiled, wanted)) return {};
         wait_for_all();
         compiled.reset();
-        Result<Plan> made = composer.compile(wanted);
-        if (!made) return failure(std::move(made));
-        plan = std::move(*made);
+        DARKROOM_TRY_VALUE(plan, composer.compile(wanted));
         composer.wait_for_kernels();
         for (Slot& slot : slots) {
             slot.upload.reset();
@@ -204,23 +202,21 @@ struct Developer::State {
     Result<> make_target(Slot& slot) const {
         if (slot.readback) return {};
         const auto [width, height] = target_extent();
-        auto image = gpu::Image::create(context(), {.name = "target",
-                                                    .format = compiled->target.format,
-                                                    .extent = {width, height, 1},
-                                                    .usage = compiled->target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-        if (!image) return failure(std::move(image));
-        slot.target = std::move(*image);
-        auto read = Readback::create(context(), reference_to(slot.target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
-        if (!read) return failure(std::move(read));
-        slot.readback = std::move(*read);
+        DARKROOM_TRY_VALUE(slot.target, gpu::Image::create(context(), {.name = "target",
+                                                                       .format = compiled->target.format,
+                                                                       .extent = {width, height, 1},
+                                                                       .usage = compiled->target.usage |
+                                                                                VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+        DARKROOM_TRY_VALUE(slot.readback,
+                           Readback::create(context(), reference_to(slot.target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                                                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)));
         return {};
     }
 
     /// `before`, the composer and the read-back in one submission.
     Result<> begin(Slot& slot, Composer& composer, Frame& frame, const RecordBefore& before,
                    const FrameReadback* layers) {
-        if (Result<> done = make_target(slot); !done) return done;
+        DARKROOM_TRY(make_target(slot));
         frame.target = reference_to(slot.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         Result<> recorded{};
         bool is_recorded = false;
@@ -288,12 +284,12 @@ Result<> Developer::submit(Composer& composer, const DevelopInput& input) {
     State& state = *state_;
     DARKROOM_ASSERT(state.in_flight < state.slots.size());
     const UploadLayers layers = layers_of(input, state.desc.target_extent);
-    if (Result<> done = state.check(input.extent, layers); !done) return done;
-    if (Result<> done = state.check(input.lights); !done) return done;
+    DARKROOM_TRY(state.check(input.extent, layers));
+    DARKROOM_TRY(state.check(input.lights));
     const CompileDesc wanted = compile_desc_for(state.context(), input, layers, state.desc);
-    if (Result<> done = state.compile(composer, wanted); !done) return done;
+    DARKROOM_TRY(state.compile(composer, wanted));
     Slot& slot = state.next_slot();
-    if (Result<> done = slot.upload.prepare(state.context(), input, layers); !done) return done;
+    DARKROOM_TRY(slot.upload.prepare(state.context(), input, layers));
     Frame frame = slot.upload.frame(input);
     const RecordBefore upload = [&](VkCommandBuffer commands) -> Result<> {
         slot.upload.record(state.context(), commands);
@@ -307,7 +303,7 @@ Result<DevelopedPicture> Developer::finish() { return state_->finish(); }
 std::uint32_t Developer::in_flight() const { return state_->in_flight; }
 
 Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInput& input) {
-    if (Result<> done = submit(composer, input); !done) return failure(std::move(done));
+    DARKROOM_TRY(submit(composer, input));
     return finish();
 }
 
@@ -315,15 +311,12 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
     State& state = *state_;
     Frame frame = input.frame;
     DARKROOM_ASSERT(frame.color.is_given());
-    if (Result<> done = check_extent(state.context(), frame.color.used_region().extent); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY(check_extent(state.context(), frame.color.used_region().extent));
     const CompileDesc wanted = compile_desc_for(state.context(), input, state.desc);
-    if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
+    DARKROOM_TRY(state.compile(composer, wanted));
     std::optional<FrameReadback> readback;
     if (layers != nullptr) {
-        Result<FrameReadback> made = FrameReadback::create(state.context(), frame);
-        if (!made) return failure(std::move(made));
-        readback = std::move(*made);
+        DARKROOM_TRY_VALUE(readback, FrameReadback::create(state.context(), frame));
     }
     std::vector<ImageRef*> images{&frame.color};
     for (const plan::FrameInput& layer : plan::frame_inputs)
@@ -342,18 +335,15 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
     if (!input.ui.empty()) {
         const DevelopInput interface { .extent = frame.color.used_region().extent, .ui = input.ui };
         const UploadLayers uploads = layers_of(interface, state.desc.target_extent);
-        if (Result<> done = state.check(interface.extent, std::span(uploads).last(1)); !done)
-            return failure(std::move(done));
-        if (Result<> done = slot.upload.prepare(state.context(), interface, uploads); !done)
-            return failure(std::move(done));
+        DARKROOM_TRY(state.check(interface.extent, std::span(uploads).last(1)));
+        DARKROOM_TRY(slot.upload.prepare(state.context(), interface, uploads));
         frame.ui = slot.upload.frame(interface).ui;
         before = [&](VkCommandBuffer commands) -> Result<> {
             slot.upload.record(state.context(), commands);
             return input.record_before ? input.record_before(commands) : Result<>();
         };
     }
-    Result<> done = state.begin(slot, composer, frame, before, readback ? &*readback : nullptr);
-    if (!done) return failure(std::move(done));
+    DARKROOM_TRY(state.begin(slot, composer, frame, before, readback ? &*readback : nullptr));
     Result<DevelopedPicture> picture = state.finish();
     if (picture && readback) *layers = readback->layers();
     return picture;

@@ -103,13 +103,12 @@ Result<Readback> Readback::create(gpu::Context& context, const ImageRef& image) 
             "an image of VkFormat {} cannot be read back, only RGBA8, floats of 16 or 32 bits, 32-bit depth",
             static_cast<int>(image.format)));
     const VkDeviceSize bytes = VkDeviceSize{texel_count(image)} * layout->channels * layout->bytes;
-    Result<gpu::Buffer> buffer = gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                                     gpu::Memory::Kind::Readback, "read-back picture");
-    if (!buffer) return failure(std::move(buffer));
+    DARKROOM_TRY_VALUE(gpu::Buffer buffer, gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                               gpu::Memory::Kind::Readback, "read-back picture"));
     Readback out;
     out.context_ = &context;
     out.image_ = image;
-    out.buffer_ = std::move(*buffer);
+    out.buffer_ = std::move(buffer);
     return out;
 }
 
@@ -157,22 +156,20 @@ Result<FrameReadback> FrameReadback::create(gpu::Context& context, const Frame& 
     out.extent_ = frame.color.used_region().extent;
     const auto add = [&](const ImageRef& image, std::optional<Readback>& slot) -> Result<> {
         if (!image.is_given()) return {};
-        Result<Readback> made = Readback::create(context, image);
-        if (!made) return failure(std::move(made));
-        slot = std::move(*made);
+        DARKROOM_TRY_VALUE(slot, Readback::create(context, image));
         return {};
     };
-    if (Result<> done = add(frame.color, out.color_); !done) return failure(std::move(done));
-    if (Result<> done = add(frame.depth, out.depth_); !done) return failure(std::move(done));
-    if (Result<> done = add(frame.normals, out.normals_); !done) return failure(std::move(done));
-    if (Result<> done = add(frame.velocity, out.velocity_); !done) return failure(std::move(done));
-    if (Result<> done = add(frame.transparency, out.transparency_); !done) return failure(std::move(done));
+    DARKROOM_TRY(add(frame.color, out.color_));
+    DARKROOM_TRY(add(frame.depth, out.depth_));
+    DARKROOM_TRY(add(frame.normals, out.normals_));
+    DARKROOM_TRY(add(frame.velocity, out.velocity_));
+    DARKROOM_TRY(add(frame.transparency, out.transparency_));
     for (const Light& light : frame.lights) {
         out.lights_.push_back(light);
         ImageRef cascades = light.cascades;
         cascades.layer_count = light.cascade_count;
         if (light.cascade_count == 0) cascades = {};
-        if (Result<> done = add(cascades, out.cascades_.emplace_back()); !done) return failure(std::move(done));
+        DARKROOM_TRY(add(cascades, out.cascades_.emplace_back()));
     }
     return out;
 }
@@ -205,23 +202,19 @@ FrameLayers FrameReadback::layers() const {
 }
 
 Result<FrameLayers> read_layers(Device& device, const Frame& frame, const RecordBefore& before) {
-    Result<FrameReadback> readback = FrameReadback::create(device.context(), frame);
-    if (!readback) return failure(std::move(readback));
-    const Result<> done = submit(device.context(), before, [&](VkCommandBuffer c) { readback->record(c); });
-    if (!done) return failure(done.error());
-    return readback->layers();
+    DARKROOM_TRY_VALUE(FrameReadback readback, FrameReadback::create(device.context(), frame));
+    DARKROOM_TRY(submit(device.context(), before, [&](VkCommandBuffer c) { readback.record(c); }));
+    return readback.layers();
 }
 
 Result<DevelopedPicture> read_picture(Device& device, const ImageRef& image, const RecordBefore& before) {
-    Result<Readback> readback = Readback::create(device.context(), image);
-    if (!readback) return failure(std::move(readback));
-    const Result<> done = submit(device.context(), before, [&](VkCommandBuffer c) { readback->record(c); });
-    if (!done) return failure(done.error());
+    DARKROOM_TRY_VALUE(Readback readback, Readback::create(device.context(), image));
+    DARKROOM_TRY(submit(device.context(), before, [&](VkCommandBuffer c) { readback.record(c); }));
     DevelopedPicture out{.extent = image.used_region().extent};
     if (image.format == VK_FORMAT_R8G8B8A8_UNORM)
-        out.bytes = readback->bytes();
+        out.bytes = readback.bytes();
     else
-        out.pixels = readback->floats(4);
+        out.pixels = readback.floats(4);
     return out;
 }
 

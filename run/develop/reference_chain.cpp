@@ -60,8 +60,7 @@ class Chain {
         pictures_.push_back(ui_ != nullptr ? *ui_ : ReferenceImage());
         states_.push_back(srgb_color);
         sizes_ = {{}, {}, frame_output()};
-        for (std::size_t i = 0; i < composer_.size(); ++i)
-            if (Result<> done = add(i); !done) return failure(std::move(done));
+        for (std::size_t i = 0; i < composer_.size(); ++i) DARKROOM_TRY(add(i));
         if (input_.histories != nullptr) {
             input_.histories->entries = std::move(histories_);
             input_.histories->sizes = std::move(history_sizes_);

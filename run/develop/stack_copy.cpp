@@ -5,6 +5,8 @@
 #include <darkroom/effect.hpp>
 #include <tuple>
 
+#include "core/try.hpp"
+
 namespace darkroom {
 
 namespace {
@@ -39,9 +41,8 @@ Result<> StackCopy::define_resources(const Composer& source, Composer& copy) {
     for (const auto& [number, resource] : resources_) copy.forget(resource);
     resources_.clear();
     for (const auto& [number, data] : source.resources()) {
-        auto defined = copy.define(*data);
-        if (!defined) return failure(std::move(defined));
-        resources_[number] = *defined;
+        DARKROOM_TRY_VALUE(auto defined, copy.define(*data));
+        resources_[number] = defined;
     }
     return {};
 }
@@ -72,7 +73,7 @@ Result<bool> StackCopy::follow(const Composer& source, Composer& copy, double ti
     shapes_.clear();
     entries_.clear();
     copy.clear();
-    if (auto ok = define_resources(source, copy); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(define_resources(source, copy));
     for (Shape& shape : shapes) {
         // What may be mixed is planned so.
         shape.desc.opacity = shape.is_mixable ? 0.5F : 1.0F;
@@ -85,7 +86,7 @@ Result<bool> StackCopy::follow(const Composer& source, Composer& copy, double ti
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         EntryDesc desc = shapes[i].desc;
         for (Handle* const wire : {&desc.input, &desc.source, &desc.second, &desc.mask}) *wire = copy_of(*wire);
-        if (auto ok = copy.rewire(entries_[i].copy, desc); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(copy.rewire(entries_[i].copy, desc));
     }
     shapes_ = std::move(shapes);
     return is_made_ = true;
@@ -98,13 +99,13 @@ Result<> StackCopy::follow_values(const Composer& source, Composer& copy, double
         if (source.info(from) != &info) continue;
         const Composer::EntryValues values = source.values_at(from, time, camera);
         if (is_between(values.opacity) && !shapes_[i].is_mixable) continue;
-        if (auto ok = copy.set_opacity(to, values.opacity); !ok) return ok;
-        if (auto ok = copy.set_enabled(to, values.is_enabled); !ok) return ok;
+        DARKROOM_TRY(copy.set_opacity(to, values.opacity));
+        DARKROOM_TRY(copy.set_enabled(to, values.is_enabled));
         const std::vector<std::uint32_t> words = copied_words(info, values.words);
         for (const ParamInfo& row : info.parameters.rows) {
             const auto wanted = std::span(words).subspan(row.word, row.words);
             if (std::ranges::equal(wanted, copy.words(to).subspan(row.word, row.words))) continue;
-            if (auto ok = copy.set(to, row.name, wanted); !ok) return ok;
+            DARKROOM_TRY(copy.set(to, row.name, wanted));
         }
     }
     return {};

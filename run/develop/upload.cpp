@@ -142,36 +142,35 @@ Result<FrameUpload::Layers> FrameUpload::make_layers(gpu::Context& context, cons
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const UploadLayer& layer = layers[i];
         if (!layer.is_given()) continue;
-        auto image = gpu::Image::create(context, {.name = layer.name,
-                                                  .format = layer.format,
-                                                  .extent = {layer.extent.width, layer.extent.height, 1},
-                                                  .usage = shader_usage(context, layer.format) | copied});
-        if (!image) return failure(std::move(image));
-        auto buffer =
+        DARKROOM_TRY_VALUE(auto image,
+                           gpu::Image::create(context, {.name = layer.name,
+                                                        .format = layer.format,
+                                                        .extent = {layer.extent.width, layer.extent.height, 1},
+                                                        .usage = shader_usage(context, layer.format) | copied}));
+        DARKROOM_TRY_VALUE(
+            auto buffer,
             gpu::Buffer::create(context, VkDeviceSize{layer.extent.width} * layer.extent.height * layer.texel(),
-                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
-        if (!buffer) return failure(std::move(buffer));
-        made.images[i] = std::move(*image);
-        made.buffers[i] = std::move(*buffer);
+                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name));
+        made.images[i] = std::move(image);
+        made.buffers[i] = std::move(buffer);
     }
     return made;
 }
 
 Result<FrameUpload::Shadow> FrameUpload::make_shadow(gpu::Context& context, const ReferenceLight& light) {
     Shadow made{.resolution = light.resolution, .count = static_cast<std::uint32_t>(light.cascades.size())};
-    auto image =
+    DARKROOM_TRY_VALUE(
+        auto image,
         gpu::Image::create(context, {.name = "shadows",
                                      .format = VK_FORMAT_D32_SFLOAT,
                                      .extent = {light.resolution, light.resolution, 1},
                                      .array_layers = std::max(made.count, 2U),  // a view of one would be no array
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | copied});
-    if (!image) return failure(std::move(image));
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | copied}));
     const VkDeviceSize bytes = VkDeviceSize{light.resolution} * light.resolution * made.count * sizeof(float);
-    auto buffer =
-        gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "shadows");
-    if (!buffer) return failure(std::move(buffer));
-    made.image = std::move(*image);
-    made.buffer = std::move(*buffer);
+    DARKROOM_TRY_VALUE(auto buffer, gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                        gpu::Memory::Kind::Upload, "shadows"));
+    made.image = std::move(image);
+    made.buffer = std::move(buffer);
     return made;
 }
 
@@ -187,9 +186,7 @@ Result<> FrameUpload::prepare_lights(gpu::Context& context, std::span<const Refe
         Shadow& shadow = shadows_[used++];
         if (shadow.resolution != source.resolution || shadow.count != light.cascade_count) {
             shadow = {};
-            Result<Shadow> made = make_shadow(context, source);
-            if (!made) return failure(std::move(made));
-            shadow = std::move(*made);
+            DARKROOM_TRY_VALUE(shadow, make_shadow(context, source));
         }
         std::byte* to = shadow.buffer.memory.mapped;
         for (const std::vector<float>& cascade : source.cascades) {
@@ -206,9 +203,7 @@ Result<> FrameUpload::prepare_lights(gpu::Context& context, std::span<const Refe
 
 Result<> FrameUpload::prepare(gpu::Context& context, const DevelopInput& input, const UploadLayers& layers) {
     if (!layers_) {
-        Result<Layers> made = make_layers(context, layers);
-        if (!made) return failure(std::move(made));
-        layers_ = std::move(*made);
+        DARKROOM_TRY_VALUE(layers_, make_layers(context, layers));
     }
     for (std::size_t i = 0; i < layers.size(); ++i)
         if (layers_->buffers[i]) fill(layers[i], layers_->buffers[i]->memory.mapped);

@@ -79,9 +79,8 @@ struct HudDocument::State {
     }
 
     [[nodiscard]] Result<Template> read() {
-        const auto bytes = read_file(path, {.max_size = options.limits.document_bytes});
-        if (!bytes) return failure(bytes.error());
-        std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+        DARKROOM_TRY_VALUE(const auto bytes, read_file(path, {.max_size = options.limits.document_bytes}));
+        std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         SvgFacts facts;
         if (auto checked = check_svg(text, options.limits.elements, &facts); !checked)
             return user_error(placed(checked.error().text));
@@ -221,9 +220,7 @@ Result<std::unique_ptr<HudDocument>> HudDocument::load(const std::filesystem::pa
     auto state = std::make_unique<State>(path, options);
     state->stamp = stamp_of(path);
     state->looked = Clock::now();
-    auto read = state->read();
-    if (!read) return failure(std::move(read));
-    state->latest = std::move(*read);
+    DARKROOM_TRY_VALUE(state->latest, state->read());
     return std::unique_ptr<HudDocument>(new HudDocument(std::move(state)));
 }
 

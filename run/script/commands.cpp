@@ -153,16 +153,14 @@ bool Run::keep(std::string_view name, Words values, bool is_archived) {
 }
 
 Result<> Run::write(std::string_view name, const Variable& variable, std::string_view value) {
-    const auto written = state_.write(name, variable, value);
-    if (!written) return failure(written.error());
-    if (!written->empty()) print(Severity::Warning, *written);
+    DARKROOM_TRY_VALUE(const auto written, state_.write(name, variable, value));
+    if (!written.empty()) print(Severity::Warning, written);
     return {};
 }
 
 Result<> Run::get(Words arguments) {
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
-    print(Severity::Info, fmt::format("\"{}\" is \"{}\"", printable(arguments[0]), state_.text(*variable)));
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
+    print(Severity::Info, fmt::format("\"{}\" is \"{}\"", printable(arguments[0]), state_.text(variable)));
     return {};
 }
 
@@ -188,10 +186,9 @@ Result<> Run::write_next(std::string_view name, const Variable& variable, std::s
     const std::string now = state_.text(variable);
     std::size_t next = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const auto value = read_value(*variable.row, name, values[i]);
-        if (!value) return failure(value.error());
+        DARKROOM_TRY_VALUE(const auto value, read_value(*variable.row, name, values[i]));
         std::vector<std::uint32_t> words(variable.row->word);
-        words.insert(words.end(), value->words.begin(), value->words.end());
+        words.insert(words.end(), value.words.begin(), value.words.end());
         if (variable_text(*variable.row, words) != now) continue;
         next = i + 1;
         break;
@@ -200,45 +197,41 @@ Result<> Run::write_next(std::string_view name, const Variable& variable, std::s
 }
 
 Result<> Run::toggle(Words arguments) {
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
     if (arguments.size() > 1) {
-        const std::string other = arguments.size() > 2 ? std::string(arguments[2]) : default_text(*variable);
-        return write_next(arguments[0], *variable, std::array{std::string(arguments[1]), other});
+        const std::string other = arguments.size() > 2 ? std::string(arguments[2]) : default_text(variable);
+        return write_next(arguments[0], variable, std::array{std::string(arguments[1]), other});
     }
-    const auto number = parse_number(state_.text(*variable));
+    const auto number = parse_number(state_.text(variable));
     if (!number)
         return user_error(
             fmt::format("{} is not a number: name the values that it toggles between", printable(arguments[0])));
-    return write(arguments[0], *variable, *number == 0 ? "1" : "0");
+    return write(arguments[0], variable, *number == 0 ? "1" : "0");
 }
 
 Result<> Run::cycle(Words arguments) {
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
-    const std::span<const std::string_view> choices = variable->row->choices;
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
+    const std::span<const std::string_view> choices = variable.row->choices;
     const Words given = arguments.size() > 1 ? arguments.subspan(1) : choices;
     if (given.empty())
         return user_error(fmt::format("{}: name the values that it cycles through", printable(arguments[0])));
-    return write_next(arguments[0], *variable, std::vector<std::string>(given.begin(), given.end()));
+    return write_next(arguments[0], variable, std::vector<std::string>(given.begin(), given.end()));
 }
 
 Result<> Run::inc(Words arguments) {
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
-    const auto number = parse_number(state_.text(*variable));
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
+    const auto number = parse_number(state_.text(variable));
     const auto amount = arguments.size() > 1 ? parse_number(arguments[1]) : std::optional(1.0);
     if (!amount)
         return user_error(
             fmt::format("inc {}: '{}' is not a number", printable(arguments[0]), printable(arguments[1])));
     if (!number) return user_error(fmt::format("inc {}: it is not a number", printable(arguments[0])));
-    return write(arguments[0], *variable, fmt::format("{}", *number + *amount));
+    return write(arguments[0], variable, fmt::format("{}", *number + *amount));
 }
 
 Result<> Run::reset(Words arguments) {
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
-    return write(arguments[0], *variable, default_text(*variable));
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
+    return write(arguments[0], variable, default_text(variable));
 }
 
 Result<> Run::reset_where(bool archived_alone) {
@@ -246,7 +239,7 @@ Result<> Run::reset_where(bool archived_alone) {
     const std::vector<NamedVariable> all = all_variables(*state_.composer);
     for (const auto& [name, variable] : all) {
         if (state_.is_read_only(variable) || (archived_alone && !state_.is_archived(variable))) continue;
-        if (auto done = write(name, variable, default_text(variable)); !done) return done;
+        DARKROOM_TRY(write(name, variable, default_text(variable)));
     }
     return {};
 }
@@ -277,10 +270,9 @@ Result<> Run::exec(Words arguments) {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored) && !lies_in(state_.desc.folder, path))
         return user_error(fmt::format("exec {}: leads out of the console's folder", shown));
-    const auto content = read_file(path, {.max_size = longest_file});
-    if (!content) return failure(content.error());
+    DARKROOM_TRY_VALUE(const auto content, read_file(path, {.max_size = longest_file}));
     ++depth_;
-    text({reinterpret_cast<const char*>(content->data()), content->size()}, path.string());
+    text({reinterpret_cast<const char*>(content.data()), content.size()}, path.string());
     --depth_;
     return {};
 }
@@ -300,11 +292,10 @@ Result<> Run::help(Words arguments) {
         tell(*known);
         return {};
     }
-    const auto variable = look_up(arguments[0]);
-    if (!variable) return failure(variable.error());
-    const ParamInfo& row = *variable->row;
+    DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
+    const ParamInfo& row = *variable.row;
     print(Severity::Info, fmt::format("{}: {} It takes {}, by default {}, now {}.", printable(arguments[0]), row.doc,
-                                      interval(row), default_text(*variable), state_.text(*variable)));
+                                      interval(row), default_text(variable), state_.text(variable)));
     return {};
 }
 

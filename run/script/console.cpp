@@ -54,13 +54,11 @@ Result<std::string> Console::State::write(std::string_view name, const script::V
                                           std::string_view value, std::optional<std::string_view> owner) {
     const std::string shown = printable(name);
     if (is_read_only(variable)) return user_error(fmt::format("{} is read-only", shown));
-    auto read = script::read_value(*variable.row, shown, value);
-    if (!read) return failure(std::move(read));
+    DARKROOM_TRY_VALUE(auto read, script::read_value(*variable.row, shown, value));
     const std::string_view row = variable.row->name;
-    auto written = owner ? composer->set_override(variable.entry, row, *owner, read->words)
-                         : composer->set(variable.entry, row, read->words);
-    if (!written) return failure(std::move(written));
-    return std::move(read->remark);
+    DARKROOM_TRY(owner ? composer->set_override(variable.entry, row, *owner, read.words)
+                       : composer->set(variable.entry, row, read.words));
+    return std::move(read.remark);
 }
 
 Console::Console(Composer& composer, ConsoleDesc desc) : state_(std::make_unique<State>()) {
@@ -146,9 +144,8 @@ bool Console::lock(std::string_view name, bool is_locked) {
 Result<> Console::read_config(const std::filesystem::path& path) try {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return {};
-    const auto content = read_file(path, {.max_size = longest_file});
-    if (!content) return failure(content.error());
-    const std::string_view text(reinterpret_cast<const char*>(content->data()), content->size());
+    DARKROOM_TRY_VALUE(const auto content, read_file(path, {.max_size = longest_file}));
+    const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
     script::RunOptions options;
     options.place = path.string();
     options.kept = &state_->kept;

@@ -125,9 +125,8 @@ Result<> Controllers::State::run_text(const std::string& name, std::string_view 
 }
 
 Result<> Controllers::State::run_file(const std::string& name) {
-    const auto content = read_file(name, {.max_size = longest_text});
-    if (!content) return failure(content.error());
-    return run_text(name, {reinterpret_cast<const char*>(content->data()), content->size()});
+    DARKROOM_TRY_VALUE(const auto content, read_file(name, {.max_size = longest_text}));
+    return run_text(name, {reinterpret_cast<const char*>(content.data()), content.size()});
 }
 
 Result<> Controllers::State::run(Script& script) {
@@ -204,13 +203,12 @@ Result<Controllers> Controllers::create(Console& console, ControllersDesc desc) 
     state->console = &console;
     state->desc = std::move(desc);
     if (!state->desc.print) state->desc.print = [](Severity, std::string_view) {};
-    auto sandbox = script::Sandbox::create();
-    if (!sandbox) return failure(std::move(sandbox));
-    lua_State* const lua = (*sandbox)->lua();
+    DARKROOM_TRY_VALUE(auto sandbox, script::Sandbox::create());
+    lua_State* const lua = sandbox->lua();
     lua_pushcfunction(lua, offer_all);
     lua_pushlightuserdata(lua, static_cast<script::Host*>(state.get()));
     if (lua_pcall(lua, 1, 0, 0) != LUA_OK) return machine_error("no memory for what scripts may call");
-    state->sandbox = std::move(*sandbox);
+    state->sandbox = std::move(sandbox);
     return Controllers(std::move(state));
 } catch (...) {
     return caught("scripts");

@@ -126,7 +126,7 @@ Result<VariableValue> read_value(const ParamInfo& row, std::string_view name, st
         return user_error(fmt::format("{} = {}: allowed here is {} without %", name, printable(text), interval(row)));
     const bool is_clamped = (is_float(row.kind) || row.kind == Kind::Int) && clamp(row.range, *value);
     std::vector<std::uint32_t> words(row.word + row.words);
-    if (auto ok = assign(row, words, *value, name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(assign(row, words, *value, name));
     VariableValue out;
     if (is_clamped)
         out.remark = fmt::format("{} = {}: allowed is {}, set to {}", name, printable(text), interval(row),

@@ -108,8 +108,7 @@ Result<> unpack_mesh(std::span<const std::byte> bytes, std::uint64_t vertices, c
                             ? unpack<draco::MeshSequentialDecoder>(bytes, vertices, admit, mesh)
                             : unpack<draco::MeshEdgebreakerDecoder>(bytes, vertices, admit, mesh);
         if (!unpacked) return unpacked;
-        for (DracoAttribute& attribute : attributes)
-            if (auto taken = take_attribute(mesh, attribute); !taken) return taken;
+        for (DracoAttribute& attribute : attributes) DARKROOM_TRY(take_attribute(mesh, attribute));
     } catch (const std::exception& exception) {
         return user_error(fmt::format("is damaged: {}", one_printable_line(exception.what())));
     }

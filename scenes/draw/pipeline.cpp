@@ -24,12 +24,10 @@ class Module {
     ~Module() { context_.vk.DestroyShaderModule(context_.device, handle, context_.allocator); }
 
     Result<> compile(const std::string& name, const std::string& text, ShaderStage stage) {
-        const Result<std::vector<std::uint32_t>> words =
-            context_.shaders->compile({.name = name, .text = text, .stage = stage});
-        if (!words) return failure(words.error());
-        const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                            .codeSize = words->size() * 4,
-                                            .pCode = words->data()};
+        DARKROOM_TRY_VALUE(const std::vector<std::uint32_t> words,
+                           context_.shaders->compile({.name = name, .text = text, .stage = stage}));
+        const VkShaderModuleCreateInfo info{
+            .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = words.size() * 4, .pCode = words.data()};
         return context_.check(
             cleared_on_failure(context_.vk.CreateShaderModule(context_.device, &info, context_.allocator, &handle),
                                handle),
@@ -52,9 +50,8 @@ Result<VkPipelineLayout> create_layout(Context& context, const PipelineDesc& des
     // No exception comes between the layout and its owner, here and below.
     const std::string what = fmt::format("creating the layout of the pipeline \"{}\"", desc.name);
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    Result<> made =
-        context.check(context.vk.CreatePipelineLayout(context.device, &info, context.allocator, &layout), what);
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(
+        context.check(context.vk.CreatePipelineLayout(context.device, &info, context.allocator, &layout), what));
     return layout;
 }
 
@@ -146,10 +143,9 @@ Result<VkPipeline> create_pipeline(Context& context, const PipelineDesc& desc, V
                                             .layout = layout};
     const std::string what = fmt::format("creating the pipeline \"{}\"", desc.name);
     VkPipeline pipeline = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &info,
-                                                                     context.allocator, &pipeline),
-                                  what);
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context.check(context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &info,
+                                                                  context.allocator, &pipeline),
+                               what));
     return pipeline;
 }
 
@@ -167,11 +163,10 @@ Result<SetLayout> SetLayout::create(Context& context, std::span<const Binding> b
                                                .pBindings = list.data()};
     SetLayout layout;
     layout.context = &context;
-    Result<> made = context.check(cleared_on_failure(context.vk.CreateDescriptorSetLayout(
-                                                         context.device, &info, context.allocator, &layout.handle),
-                                                     layout.handle),
-                                  "creating a descriptor set layout");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context.check(cleared_on_failure(context.vk.CreateDescriptorSetLayout(
+                                                      context.device, &info, context.allocator, &layout.handle),
+                                                  layout.handle),
+                               "creating a descriptor set layout"));
     return layout;
 }
 
@@ -187,19 +182,14 @@ SetLayout::~SetLayout() {
 
 Result<Pipeline> Pipeline::create(Context& context, const PipelineDesc& desc) {
     Module vertex(context), fragment(context);
-    if (Result<> made = vertex.compile(desc.name + " (vertex)", desc.vertex, ShaderStage::Vertex); !made)
-        return failure(std::move(made));
+    DARKROOM_TRY(vertex.compile(desc.name + " (vertex)", desc.vertex, ShaderStage::Vertex));
     if (!desc.fragment.empty())
-        if (Result<> made = fragment.compile(desc.name + " (fragment)", desc.fragment, ShaderStage::Fragment); !made)
-            return failure(std::move(made));
+        DARKROOM_TRY(fragment.compile(desc.name + " (fragment)", desc.fragment, ShaderStage::Fragment));
     Pipeline pipeline;
     pipeline.context = &context;
-    Result<VkPipelineLayout> layout = create_layout(context, desc);
-    if (!layout) return failure(std::move(layout));
-    pipeline.layout = *layout;
-    Result<VkPipeline> handle = create_pipeline(context, desc, *layout, vertex, fragment);
-    if (!handle) return failure(std::move(handle));
-    pipeline.handle = *handle;
+    DARKROOM_TRY_VALUE(VkPipelineLayout layout, create_layout(context, desc));
+    pipeline.layout = layout;
+    DARKROOM_TRY_VALUE(pipeline.handle, create_pipeline(context, desc, layout, vertex, fragment));
     ++context.pipelines_created;
     name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline.handle), desc.name);
     return pipeline;

@@ -6,10 +6,11 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom::gpu {
 

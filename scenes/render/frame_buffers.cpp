@@ -18,12 +18,10 @@ Result<> HostBuffer::reserve(gpu::Context& context, VkDeviceSize size, VkBufferU
     if (size <= capacity_) return {};
     VkDeviceSize wanted = std::max(size, capacity_ + capacity_ / 2);
     if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0) {
-        if (Result<> checked = check_storage(context, size, name); !checked) return checked;
+        DARKROOM_TRY(check_storage(context, size, name));
         wanted = std::min(wanted, context.traits.max_storage_range);
     }
-    Result<gpu::Buffer> made = gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name);
-    if (!made) return failure(std::move(made));
-    buffer_ = std::move(*made);
+    DARKROOM_TRY_VALUE(buffer_, gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name));
     capacity_ = wanted;
     return {};
 }
@@ -36,9 +34,7 @@ std::array<VkDescriptorPoolSize, 3> frame_set_sizes() {
 
 Result<FrameBuffers> FrameBuffers::create(gpu::Context& context, SetAllocator& sets, VkDescriptorSetLayout layout) {
     FrameBuffers out;
-    Result<VkDescriptorSet> set = sets.allocate(layout);
-    if (!set) return failure(std::move(set));
-    out.set = *set;
+    DARKROOM_TRY_VALUE(out.set, sets.allocate(layout));
     constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     Result<> made =
         out.frame_.reserve(context, sizeof(blocks::Frame), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, "frame block");

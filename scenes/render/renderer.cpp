@@ -51,7 +51,7 @@ Result<> check(const gpu::Context& context, const DrawOptions& options, Output o
 }
 
 Result<> check(const gpu::Context& context, const RenderDesc& desc) {
-    if (Result<> checked = check(context, desc.extent); !checked) return checked;
+    DARKROOM_TRY(check(context, desc.extent));
     const std::uint32_t counts = context.traits.sample_counts;
     if (!std::has_single_bit(desc.samples) || (desc.samples & counts) == 0)
         return user_error(
@@ -149,13 +149,12 @@ Result<> Renderer::State::create() {
         if (!made) return made;
         positions = positions_in_pixel(desc.positions);
     }
-    if (Result<> done = create_targets(desc.extent); !done) return done;
-    if (Result<> done = create_passes(); !done) return done;
+    DARKROOM_TRY(create_targets(desc.extent));
+    DARKROOM_TRY(create_passes());
     sets = std::make_unique<SetAllocator>(*context, frame_set_sizes(), desc.frames_in_flight);
     for (std::uint32_t i = 0; i < desc.frames_in_flight; ++i) {
-        Result<FrameBuffers> made = FrameBuffers::create(*context, *sets, scene->frame_layout.handle);
-        if (!made) return failure(std::move(made));
-        slots.push_back(std::move(*made));
+        DARKROOM_TRY_VALUE(FrameBuffers made, FrameBuffers::create(*context, *sets, scene->frame_layout.handle));
+        slots.push_back(std::move(made));
     }
     const DrawList all = draw_list(scene->first);
     return meshes->prepare(mesh_draw(scene->first, all), scene->meshes);
@@ -180,7 +179,7 @@ Result<> Renderer::State::warm_up() {
     for (const DebugView view : views) {
         MeshDraw draw = mesh_draw(all, everything);
         draw.look = {.debug = view, .has_edges = has_edges, .has_normal_arrows = true};
-        if (Result<> made = meshes->prepare(draw, scene->meshes); !made) return made;
+        DARKROOM_TRY(meshes->prepare(draw, scene->meshes));
     }
     return shadows->make_pipelines(all);
 }
@@ -194,12 +193,11 @@ TargetFormats Renderer::State::formats() const {
 }
 
 Result<> Renderer::State::create_targets(VkExtent2D extent) {
-    Result<Targets> made =
-        Targets::create(*context, {.extent = extent, .formats = formats(), .has_transparency = desc.has_transparency});
-    if (!made) return failure(std::move(made));
-    if (accumulate)
-        if (Result<> resized = accumulate->resize(*made); !resized) return resized;
-    targets = std::move(*made);
+    DARKROOM_TRY_VALUE(
+        Targets made,
+        Targets::create(*context, {.extent = extent, .formats = formats(), .has_transparency = desc.has_transparency}));
+    if (accumulate) DARKROOM_TRY(accumulate->resize(made));
+    targets = std::move(made);
     desc.extent = settings.extent = extent;
     picture = resolve ? drawn_color() : targets.copied_picture();
     frame = {};
@@ -274,11 +272,11 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
                                 .joints = snapshot->joints.size(),
                                 .weights = snapshot->weights.size()};
     for (const DrawList& casters : shadows->caster_lists()) counts.instances += casters.order.size();
-    if (Result<> done = buffers.reserve(*context, counts); !done) return done;
+    DARKROOM_TRY(buffers.reserve(*context, counts));
 
     buffers.frame() = frame_block(*snapshot, settings);
     if (accumulate) {
-        if (Result<> done = buffers.reserve_positions(*context, positions.size()); !done) return done;
+        DARKROOM_TRY(buffers.reserve_positions(*context, positions.size()));
         const scene::CameraState& camera = snapshot->camera;
         const Aperture aperture =
             aperture_of(desc.lens, camera.projection, glm::distance(camera.position, camera.target));
@@ -363,7 +361,7 @@ Result<> Renderer::State::record(VkCommandBuffer commands) {
 Result<> Renderer::State::record_positions(VkCommandBuffer commands) {
     for (std::uint32_t i = 0; i < desc.positions; ++i) {
         slots[slot].use_position(*context, commands, desc.positions - 1 - i);
-        if (Result<> done = record_position(commands); !done) return done;
+        DARKROOM_TRY(record_position(commands));
         accumulate->record(commands, targets.color, targets.drawn(targets.color, resolve->use()).layout, i);
     }
     accumulate->record_mean(commands, targets.color);
@@ -388,7 +386,7 @@ Result<> Renderer::State::record_position(VkCommandBuffer commands) {
 Result<> Renderer::State::record_scene(VkCommandBuffer commands) {
     const VkDescriptorSet set = slots[slot].set;
     const MeshDraw draw = mesh_draw(*snapshot, list);
-    if (Result<> done = meshes->record_opaque(commands, draw, scene->meshes); !done) return done;
+    DARKROOM_TRY(meshes->record_opaque(commands, draw, scene->meshes));
     if (shows_surroundings()) {
         billboards->record_sprites(commands, set, slot);
         sky->record_sky(commands, set);
@@ -396,7 +394,7 @@ Result<> Renderer::State::record_scene(VkCommandBuffer commands) {
     // The grid is blended, too.
     if (desc.has_transparency) targets.copy_before_transparency(commands);
     if (shows_surroundings() && desc.draw.has_grid) sky->record_grid(commands, set);
-    if (Result<> done = meshes->record_transparent(commands, draw, scene->meshes); !done) return done;
+    DARKROOM_TRY(meshes->record_transparent(commands, draw, scene->meshes));
     if (shows_surroundings()) billboards->record_particles(commands, set, slot);
     return meshes->record_overlays(commands, draw, scene->meshes);
 }
@@ -409,10 +407,9 @@ Renderer::~Renderer() = default;
 Result<Renderer> Renderer::create(Device& device, const scene::Scene& scene, const scene::Assets& assets,
                                   const RenderDesc& desc) {
     gpu::Context& context = device.context();
-    if (Result<> checked = check(context, desc); !checked) return failure(std::move(checked));
-    Result<std::shared_ptr<SceneOnDevice>> uploaded = SceneOnDevice::create(context, scene, assets);
-    if (!uploaded) return failure(std::move(uploaded));
-    return create(context, std::move(*uploaded), desc);
+    DARKROOM_TRY(check(context, desc));
+    DARKROOM_TRY_VALUE(std::shared_ptr<SceneOnDevice> uploaded, SceneOnDevice::create(context, scene, assets));
+    return create(context, std::move(uploaded), desc);
 }
 
 Result<Renderer> Renderer::create(gpu::Context& context, std::shared_ptr<SceneOnDevice> scene, const RenderDesc& desc) {
@@ -421,22 +418,22 @@ Result<Renderer> Renderer::create(gpu::Context& context, std::shared_ptr<SceneOn
     out.state_->scene = std::move(scene);
     out.state_->desc = desc;
     out.state_->desc.frames_in_flight = std::max(desc.frames_in_flight, 1U);
-    if (Result<> made = out.state_->create(); !made) return failure(std::move(made));
+    DARKROOM_TRY(out.state_->create());
     return out;
 }
 
 Result<Renderer> Renderer::sharing(const RenderDesc& desc) const {
-    if (Result<> checked = check(*state_->context, desc); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check(*state_->context, desc));
     return create(*state_->context, state_->scene, desc);
 }
 
 Result<> Renderer::resize(VkExtent2D extent) {
-    if (Result<> checked = check(*state_->context, extent); !checked) return checked;
+    DARKROOM_TRY(check(*state_->context, extent));
     return state_->create_targets(extent);
 }
 
 Result<> Renderer::set(const DrawOptions& options) {
-    if (Result<> checked = check(*state_->context, options, state_->desc.output); !checked) return checked;
+    DARKROOM_TRY(check(*state_->context, options, state_->desc.output));
     state_->apply(options);
     return {};
 }

@@ -113,13 +113,11 @@ Result<Targets> Targets::create(gpu::Context& context, const TargetsDesc& desc) 
                formats.samples}};
     for (const Wanted& one : wanted) {
         if (!one.is_wanted) continue;
-        Result<gpu::Image> made = gpu::Image::create(context, {.name = one.name,
-                                                               .format = one.format,
-                                                               .extent = {desc.extent.width, desc.extent.height, 1},
-                                                               .usage = one.usage,
-                                                               .samples = one.samples});
-        if (!made) return failure(std::move(made));
-        one.image = std::move(*made);
+        DARKROOM_TRY_VALUE(one.image, gpu::Image::create(context, {.name = one.name,
+                                                                   .format = one.format,
+                                                                   .extent = {desc.extent.width, desc.extent.height, 1},
+                                                                   .usage = one.usage,
+                                                                   .samples = one.samples}));
     }
     return out;
 }

@@ -42,7 +42,7 @@ Result<> Budget::take_from(Account& account, std::string_view place, std::string
 }
 
 Result<> Budget::take(std::string_view place, std::string_view things, std::uint64_t count, std::uint64_t size) {
-    if (Result<> taken = take_from(memory_, place, things, count, size); !taken) return taken;
+    DARKROOM_TRY(take_from(memory_, place, things, count, size));
     return take_from(work_, place, things, count, size);
 }
 

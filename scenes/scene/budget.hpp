@@ -5,9 +5,10 @@
 // before it is made. A model in memory and a moment of a scene are each held against a budget of their own.
 
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <optional>
 #include <string_view>
+
+#include "core/try.hpp"
 
 namespace darkroom::scene {
 

@@ -30,14 +30,13 @@ std::uint16_t half_of_alpha(float value) { return half_of(value, 1); }
 class OpenedImage {
   public:
     [[nodiscard]] static Result<OpenedImage> open(std::span<const std::byte> bytes) {
-        auto opened = open_source(bytes, 1);
-        if (!opened) return failure(std::move(opened));
-        const FilePart& part = opened->source->parts().front();
+        DARKROOM_TRY_VALUE(auto opened, open_source(bytes, 1));
+        const FilePart& part = opened.source->parts().front();
         if (part.channels.empty()) return user_error("is not a flat picture");
         if (part.width > max_texture_side || part.height > max_texture_side)
             return user_error(fmt::format("the picture is {}x{}, [1, {}] a side is allowed", part.width, part.height,
                                           max_texture_side));
-        return OpenedImage(std::move(opened->source), bytes.size());
+        return OpenedImage(std::move(opened.source), bytes.size());
     }
 
     [[nodiscard]] std::size_t pixel_count() const { return std::size_t{part().width} * part().height; }
@@ -47,7 +46,7 @@ class OpenedImage {
 
     [[nodiscard]] Result<Image> decode() {
         Image image{.width = part().width, .height = part().height};
-        if (auto done = read_into(image); !done) return failure(std::move(done));
+        DARKROOM_TRY(read_into(image));
         return image;
     }
 
@@ -95,7 +94,7 @@ class OpenedImage {
         }
         image.kind = ImageKind::Halves;
         std::vector<float> samples;
-        if (auto done = read(SampleKind::Float, samples); !done) return done;
+        DARKROOM_TRY(read(SampleKind::Float, samples));
         spread<float>(samples, channel_count(), half_of_light, half_of_alpha, half_of_alpha(1), image.wide);
         return {};
     }
@@ -103,7 +102,7 @@ class OpenedImage {
     template <class T>
     [[nodiscard]] Result<> read_integers(SampleKind kind, std::vector<T>& rgba) {
         std::vector<T> samples;
-        if (auto done = read(kind, samples); !done) return done;
+        DARKROOM_TRY(read(kind, samples));
         const auto same = [](T value) { return value; };
         if (channel_count() == 4)
             rgba = std::move(samples);

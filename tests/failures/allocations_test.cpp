@@ -173,7 +173,7 @@ class Allocations : public test::StackTest {
         };
         const auto no_plan = [](Result<Plan> made) { return made ? Result<>{} : Result<>(failure(made.error())); };
         const auto later = [&]() -> Result<> {
-            if (auto ok = composer.compile_later(large); !ok) return ok;
+            DARKROOM_TRY(composer.compile_later(large));
             const PendingCompile pending = composer.pending();
             return pending.error ? failure(*pending.error) : Result<>{};
         };

@@ -94,7 +94,7 @@ class VulkanStack : public test::StackTest {
         Composer composer(*device, {.max_threads = 2});
         fill(composer, false);
         const auto compile_later = [&]() -> Result<> {
-            if (auto ok = composer.compile_later(host.compile_desc()); !ok) return ok;
+            DARKROOM_TRY(composer.compile_later(host.compile_desc()));
             for (PendingCompile pending = composer.pending();; pending = composer.pending()) {
                 if (pending.error) return failure(*pending.error);
                 if (!pending.is_pending) return {};

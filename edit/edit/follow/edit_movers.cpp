@@ -30,13 +30,12 @@ struct Target {
 
 Result<Target> movable_at(Look& look, std::string_view entry, std::string_view parameter, bool is_layer) {
     const std::string key = fmt::format("{}.{}", entry, parameter), shown = printable(key);
-    const Result<LookTarget> found = find_target(look, key, shown);
-    if (!found) return failure(found.error());
-    if (found->row == nullptr || !is_movable(*found->row, found->is_state, is_layer))
+    DARKROOM_TRY_VALUE(const LookTarget found, find_target(look, key, shown));
+    if (found.row == nullptr || !is_movable(*found.row, found.is_state, is_layer))
         return user_error(is_layer ? fmt::format("{}: it is fixed when the stack is compiled, and cannot move", shown)
                                    : fmt::format("{}: a pulse adds to parameters made of numbers", shown));
-    return Target{found->entry, entry_names(look)[static_cast<std::size_t>(found->entry - look.entries.data())],
-                  found->row, found->is_state};
+    return Target{found.entry, entry_names(look)[static_cast<std::size_t>(found.entry - look.entries.data())],
+                  found.row, found.is_state};
 }
 
 Result<> check_name(std::string_view what, std::string_view name) {
@@ -51,8 +50,8 @@ Result<> check_room(std::string_view what, std::size_t count, std::size_t most) 
 }
 
 Result<> check_new_layer(const Look& look, std::string_view name) {
-    if (Result<> done = check_name("name", name); !done) return done;
-    if (Result<> done = check_room("layer", look.layers.size(), max_layers); !done) return done;
+    DARKROOM_TRY(check_name("name", name));
+    DARKROOM_TRY(check_room("layer", look.layers.size(), max_layers));
     if (std::ranges::count(look.layers, name, &LookLayer::name) == 0) return {};
     return user_error(fmt::format("two layers are named '{}'", name));
 }
@@ -82,23 +81,22 @@ std::vector<Movable> movable_values(const Look& look, bool is_layer) {
 }
 
 Result<std::size_t> add_pulse(Look& look, std::string_view event, std::string_view entry, std::string_view parameter) {
-    if (Result<> done = check_name("event", event); !done) return failure(std::move(done));
-    if (Result<> done = check_room("pulse", look.pulses.size(), max_pulses); !done) return failure(std::move(done));
-    const Result<Target> target = movable_at(look, entry, parameter, false);
-    if (!target) return failure(target.error());
-    if (target->row->is_amount) wake(*target->entry);
+    DARKROOM_TRY(check_name("event", event));
+    DARKROOM_TRY(check_room("pulse", look.pulses.size(), max_pulses));
+    DARKROOM_TRY_VALUE(const Target target, movable_at(look, entry, parameter, false));
+    if (target.row->is_amount) wake(*target.entry);
     // Enough to be seen, of parameters that reach from 0 to 1 and of those that reach to a thousand.
-    const auto amount = static_cast<float>(std::min(1.0, (target->row->range.max - target->row->range.min) / 2));
+    const auto amount = static_cast<float>(std::min(1.0, (target.row->range.max - target.row->range.min) / 2));
     look.pulses.push_back({.event = std::string(event),
-                           .entry = target->name,
-                           .parameter = std::string(target->row->name),
+                           .entry = target.name,
+                           .parameter = std::string(target.row->name),
                            .amount = {amount, amount, amount, amount},
                            .state = {}});
     return look.pulses.size() - 1;
 }
 
 Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_view entry, std::string_view parameter) {
-    if (Result<> done = check_new_layer(look, name); !done) return failure(std::move(done));
+    DARKROOM_TRY(check_new_layer(look, name));
     look.layers.push_back(
         {.name = std::string(name), .file = {}, .state = {.weight = 1}, .distance = {}, .values = {}});
     Result<> done = add_layer_value(look, look.layers.size() - 1, entry, parameter);
@@ -109,15 +107,11 @@ Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_vie
 
 Result<std::size_t> add_layer_of(Look& look, std::string_view name, const std::string& file,
                                  const LookOptions& options) {
-    if (Result<> done = check_new_layer(look, name); !done) return failure(std::move(done));
-    Result<std::vector<LookLayer::Value>> values = layer_values(look, file, options);
-    if (!values) return failure(std::move(values));
-    if (values->empty()) return user_error(fmt::format("{}: it is this look; allowed is another one", printable(file)));
-    look.layers.push_back({.name = std::string(name),
-                           .file = file,
-                           .state = {.weight = 1},
-                           .distance = {},
-                           .values = std::move(*values)});
+    DARKROOM_TRY(check_new_layer(look, name));
+    DARKROOM_TRY_VALUE(std::vector<LookLayer::Value> values, layer_values(look, file, options));
+    if (values.empty()) return user_error(fmt::format("{}: it is this look; allowed is another one", printable(file)));
+    look.layers.push_back(
+        {.name = std::string(name), .file = file, .state = {.weight = 1}, .distance = {}, .values = std::move(values)});
     return look.layers.size() - 1;
 }
 
@@ -133,16 +127,15 @@ Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, 
     if (!look.layers[layer].file.empty())
         return user_error(fmt::format("{}: its values come from {}: edit that look", look.layers[layer].name,
                                       printable(look.layers[layer].file)));
-    const Result<Target> target = movable_at(look, entry, parameter, true);
-    if (!target) return failure(target.error());
+    DARKROOM_TRY_VALUE(const Target target, movable_at(look, entry, parameter, true));
     std::vector<LookLayer::Value>& values = look.layers[layer].values;
     if (std::ranges::any_of(values, [&](const LookLayer::Value& value) {
-            return value.entry == target->name && value.parameter == target->row->name;
+            return value.entry == target.name && value.parameter == target.row->name;
         }))
         return user_error(fmt::format("{}: the layer {} has it already",
                                       printable(fmt::format("{}.{}", entry, parameter)), look.layers[layer].name));
-    LookLayer::Value value = present_value(*target);
-    if (target->row->is_amount) wake(*target->entry);
+    LookLayer::Value value = present_value(target);
+    if (target.row->is_amount) wake(*target.entry);
     values.push_back(std::move(value));
     return {};
 }

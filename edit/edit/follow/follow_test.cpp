@@ -184,7 +184,7 @@ TEST_F(FollowByName, TablesAreDefinedOnceAndForgotten) {
     EXPECT_EQ(composer_.resources().begin()->first, number);
     EXPECT_EQ(composer_.resources().size(), 1u);
     EXPECT_TRUE(needs_compile([&](Look& look) {
-        if (auto done = remove_entry(look, "lut#2"); !done) return done;
+        DARKROOM_TRY(remove_entry(look, "lut#2"));
         return set_file(look, "lut", row->name, "", options);
     }));
     EXPECT_TRUE(composer_.resources().empty());

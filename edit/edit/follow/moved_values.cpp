@@ -118,7 +118,7 @@ Result<> set_moved(Look& look, Mover mover, std::size_t value, Words words) {
     if (value >= values.size()) return user_error("the pulse or layer was removed");
     const MovedValue& wanted = values[value];
     const std::string shown = fmt::format("{}, {}", name_of(look, mover), wanted.row.name);
-    if (Result<> done = check_words(wanted.row, words, shown); !done) return done;
+    DARKROOM_TRY(check_words(wanted.row, words, shown));
     if (!mover.is_layer) {
         LookPulse& pulse = look.pulses[mover.number];
         if (value == 0)

@@ -24,7 +24,7 @@ class Blocks {
         : editor_(editor), key_(key), path_{std::string(key)}, text_(editor.text()) {}
 
     Result<> arrange(std::span<const ListElement> elements) {
-        if (Result<> done = find(); !done) return done;
+        DARKROOM_TRY(find());
         const std::string eol(editor_.line_end());
         std::vector<Block> now;
         for (const ListElement& element : elements) {

@@ -45,14 +45,13 @@ void become_stack(Look& look) {
 }
 
 Result<LookEntry*> restructured(Look& look, std::string_view name) {
-    Result<LookEntry*> entry = entry_at(look, name);
-    if (!entry) return entry;
-    if ((*entry)->is_of_ui)
+    DARKROOM_TRY_VALUE(auto* entry, entry_at(look, name));
+    if (entry->is_of_ui)
         return user_error(fmt::format("{}: belongs to the interface: allowed are changes of its values and its switch",
                                       printable(name)));
     if (!look.is_flat) return entry;
-    const EffectInfo* const effect = (*entry)->effect;
-    const Toggle was_enabled = std::exchange((*entry)->state.enabled, true);
+    const EffectInfo* const effect = entry->effect;
+    const Toggle was_enabled = std::exchange(entry->state.enabled, true);
     become_stack(look);
     const auto found = std::ranges::find(look.entries, effect, &LookEntry::effect);
     if (found == look.entries.end())

@@ -42,17 +42,15 @@ class Splicer {
         : editor_(std::move(editor)), was_(was), is_(is), lens_(lens) {}
 
     Result<std::string> run() {
-        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui})
-            if (Result<> done = (this->*step)(); !done) return failure(std::move(done));
-        if (Result<> done = splice_movers(editor_, was_, is_); !done) return failure(std::move(done));
+        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui}) DARKROOM_TRY((this->*step)());
+        DARKROOM_TRY(splice_movers(editor_, was_, is_));
         return editor_.text();
     }
 
   private:
     Result<> write_picture() {
         if (is_.is_flat) {
-            if (!was_.is_flat)
-                if (const auto removed = editor_.remove_table({"stack"}); !removed) return failure(removed.error());
+            if (!was_.is_flat) DARKROOM_TRY(editor_.remove_table({"stack"}));
             return write_flat();
         }
         return was_.is_flat ? make_stack() : write_stack();
@@ -64,9 +62,8 @@ class Splicer {
             const auto removed = editor_.remove_table(ui_path);
             return removed ? Result<>{} : failure(removed.error());
         }
-        if (!editor_.contains(ui_path))
-            if (Result<> done = editor_.add_table(ui_path[0]); !done) return done;
-        if (Result<> done = write_interface(was_.ui.value_or(LookUi{}), *is_.ui); !done) return done;
+        if (!editor_.contains(ui_path)) DARKROOM_TRY(editor_.add_table(ui_path[0]));
+        DARKROOM_TRY(write_interface(was_.ui.value_or(LookUi{}), *is_.ui));
         return write_table(ui_path, true);
     }
 
@@ -77,22 +74,20 @@ class Splicer {
 
     Result<> write_interface(const LookUi& before, const LookUi& now) {
         const auto text = [](const std::string& name) { return name.empty() ? name : toml_string(name); };
-        if (now.document != before.document)
-            if (Result<> done = write_text(ui_path, "document", text(now.document)); !done) return done;
+        if (now.document != before.document) DARKROOM_TRY(write_text(ui_path, "document", text(now.document)));
         if (now.controllers != before.controllers)
-            if (Result<> done = write_text(ui_path, "controllers", list_text(now.controllers)); !done) return done;
+            DARKROOM_TRY(write_text(ui_path, "controllers", list_text(now.controllers)));
         if (now.game == before.game) return {};
         const TomlPath game{ui_path[0], "game"};
         const bool is_inline = editor_.find(game) != nullptr;
         if (!editor_.contains(game) || (is_inline && now.game.empty()))
             return write_text(ui_path, "game", game_text(now.game));
         for (const auto& [name, value] : before.game)
-            if (!now.game.contains(name))
-                if (Result<> done = editor_.remove(game, name); !done) return done;
+            if (!now.game.contains(name)) DARKROOM_TRY(editor_.remove(game, name));
         for (const auto& [name, value] : now.game) {
             const auto old = before.game.find(name);
             if (old != before.game.end() && old->second == value) continue;
-            if (Result<> done = editor_.set(game, name, game_text(value)); !done) return done;
+            DARKROOM_TRY(editor_.set(game, name, game_text(value)));
         }
         return {};
     }
@@ -101,13 +96,12 @@ class Splicer {
 
     Result<> write_flat() {
         if (is_.is_enabled != (!was_.is_flat || was_.is_enabled))
-            if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
+            DARKROOM_TRY(editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)));
         const auto write_order = [&] {
             return editor_.set(flat_path, "order", toml_string(order_names[static_cast<std::size_t>(is_.order)]));
         };
-        if (was_.is_flat && is_.order != was_.order)
-            if (Result<> done = write_order(); !done) return done;
-        if (Result<> done = write_table(flat_path, false); !done) return done;
+        if (was_.is_flat && is_.order != was_.order) DARKROOM_TRY(write_order());
+        DARKROOM_TRY(write_table(flat_path, false));
         // A table that names no order is in the documented one, a look without a table in the other.
         const bool has_table = editor_.contains(flat_path), is_documented = is_.order == LookOrder::Documented;
         const bool must_say = is_documented ? !was_.is_flat && !has_table : has_table;
@@ -123,14 +117,14 @@ class Splicer {
         };
         for (const LookEntry& entry : is_.entries) {
             if (entry.is_of_ui != is_of_ui) continue;
-            if (Result<> done = write_flat_entry(table, counterpart(entry, was_), entry); !done) return done;
+            DARKROOM_TRY(write_flat_entry(table, counterpart(entry, was_), entry));
         }
         // What was off when a flat table became a stack is not in it.
         for (const LookEntry& before : was_.entries) {
             if (before.is_of_ui != is_of_ui || !was_has(table) || counterpart(before, is_) != nullptr) continue;
             LookEntry off = before;
             off.state.enabled = false;
-            if (Result<> done = write_flat_entry(table, &before, off); !done) return done;
+            DARKROOM_TRY(write_flat_entry(table, &before, off));
         }
         return {};
     }
@@ -165,7 +159,7 @@ class Splicer {
             const bool may_stand = before == nullptr && (has_key(table, key) || has_key(table, former));
             if (is_same_row(row) && !may_stand) continue;
             is_amount_new |= row.is_amount;
-            if (Result<> done = set_row(table, key, former, value_text(entry, row), own); !done) return done;
+            DARKROOM_TRY(set_row(table, key, former, value_text(entry, row), own));
         }
         const bool is_said = has_key(table, switch_key);
         const bool is_other =
@@ -196,8 +190,7 @@ class Splicer {
     Result<> set_row(const TomlPath& table, const std::string& key, const std::string& former, const std::string& text,
                      std::span<const std::string> neighbours) {
         const bool has_former = former != key && has_key(table, former);
-        if (has_former)
-            if (Result<> done = editor_.set(table, former, text); !done) return done;
+        if (has_former) DARKROOM_TRY(editor_.set(table, former, text));
         return has_former && !has_key(table, key) ? Result<>{} : editor_.set(table, key, text, neighbours);
     }
 
@@ -216,18 +209,17 @@ class Splicer {
     }
 
     Result<> make_stack() {
-        const auto place = editor_.remove_table(flat_path);
-        if (!place) return failure(place.error());
+        DARKROOM_TRY_VALUE(const auto place, editor_.remove_table(flat_path));
         std::vector<ListElement> elements;
         for (const LookEntry* const entry : stacked(is_)) elements.push_back({std::nullopt, pairs_of(*entry)});
         if (elements.empty()) return editor_.set({}, "stack", "[]");
         const std::string eol(editor_.line_end()), &text = editor_.text();
         std::string blocks = blocks_of("stack", elements, eol);
-        if (*place < text.size())
-            blocks += text[*place] == '\n' || text[*place] == '\r' ? std::string() : eol;
+        if (place < text.size())
+            blocks += text[place] == '\n' || text[place] == '\r' ? std::string() : eol;
         else if (!text.empty())
             blocks = (text.ends_with('\n') ? eol : eol + eol) + blocks;
-        return editor_.replace(*place, *place, blocks);
+        return editor_.replace(place, place, blocks);
     }
 
     Result<> write_stack() {
@@ -248,36 +240,35 @@ class Splicer {
             const auto number = static_cast<std::size_t>(std::ranges::find(before, other) - before.begin());
             is_arranged &= number == elements.size();
             elements.push_back({number, {}});
-            if (Result<> done = write_entry({"stack", std::to_string(number)}, *other, *entry); !done) return done;
+            DARKROOM_TRY(write_entry({"stack", std::to_string(number)}, *other, *entry));
         }
         if (is_arranged) return {};
         if (!elements.empty()) return arrange_list(editor_, "stack", elements);
         // Without the list, the text would be that of a flat look.
-        if (const auto removed = editor_.remove_table({"stack"}); !removed) return failure(removed.error());
+        DARKROOM_TRY(editor_.remove_table({"stack"}));
         return editor_.set({}, "stack", "[]");
     }
 
     Result<> write_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
         if (entry.effect_file != before.effect_file)
-            if (Result<> done = editor_.set(table, "effect", toml_string(entry.effect_file)); !done) return done;
+            DARKROOM_TRY(editor_.set(table, "effect", toml_string(entry.effect_file)));
         for (const WireInfo& wire : wires) {
             const std::string& name = entry.*wire.member;
             if (name == before.*wire.member) continue;
-            const Result<> done =
-                name.empty() ? editor_.remove(table, wire.key) : editor_.set(table, wire.key, toml_string(name));
-            if (!done) return done;
+            DARKROOM_TRY(name.empty() ? editor_.remove(table, wire.key)
+                                      : editor_.set(table, wire.key, toml_string(name)));
         }
         const StateWords state = state_words(entry.state), state_before = state_words(before.state);
         for (const ParamInfo& row : entry_rows.rows) {
             const std::string text = format(row, state);
             if (text == format(row, state_before)) continue;
-            if (Result<> done = editor_.set(table, row.name, text); !done) return done;
+            DARKROOM_TRY(editor_.set(table, row.name, text));
         }
         for (const ParamInfo& row : entry.effect->parameters.rows) {
             const std::string key(row.name), former(row.formerly.empty() ? row.name : row.formerly);
             const bool is_said = has_key(table, key) || has_key(table, former);
             if (is_said ? is_said_alike(before, entry, row) : has_same(before, entry, row)) continue;
-            if (Result<> done = set_row(table, key, former, value_text(entry, row), {}); !done) return done;
+            DARKROOM_TRY(set_row(table, key, former, value_text(entry, row), {}));
         }
         return {};
     }
@@ -318,10 +309,9 @@ class Splicer {
 }  // namespace
 
 Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is, const CameraLens& lens) {
-    if (const auto parsed = parse_toml(text, was.shown_name); !parsed) return failure(parsed.error());
-    Result<TomlEditor> editor = TomlEditor::of(std::string(text));
-    if (!editor) return failure(std::move(editor));
-    Result<std::string> out = Splicer(std::move(*editor), was, is, lens).run();
+    DARKROOM_TRY(parse_toml(text, was.shown_name));
+    DARKROOM_TRY_VALUE(TomlEditor editor, TomlEditor::of(std::string(text)));
+    Result<std::string> out = Splicer(std::move(editor), was, is, lens).run();
     if (!out) return failure(Error{out.error().fault, fmt::format("{}: {}", is.shown_name, out.error().text)});
     return out;
 }

@@ -87,8 +87,7 @@ class MoverSplicer {
                 continue;
             }
             elements.push_back({*place, {}});
-            if (Result<> done = write_values({key, std::to_string(*place)}, {is_layer, *counterparts[i]}, mover); !done)
-                return done;
+            DARKROOM_TRY(write_values({key, std::to_string(*place)}, {is_layer, *counterparts[i]}, mover));
         }
         // What is in no look stays behind what it stood behind.
         for (std::size_t k = 0; k < size; ++k) {
@@ -125,12 +124,12 @@ class MoverSplicer {
             const auto other = find(values_before, value);
             if (other != values_before.end() && other->words == value.words) continue;
             const auto [place, key] = place_of(table, value);
-            if (Result<> done = editor_.set(place, key, format(value.row, value.words)); !done) return done;
+            DARKROOM_TRY(editor_.set(place, key, format(value.row, value.words)));
         }
         for (const MovedValue& value : values_before) {
             if (find(values_now, value) != values_now.end()) continue;
             const auto [place, key] = place_of(table, value);
-            if (Result<> done = editor_.remove(place, key); !done) return done;
+            DARKROOM_TRY(editor_.remove(place, key));
         }
         return {};
     }

@@ -214,8 +214,7 @@ TEST_F(Splice, EntriesMoveAsBlocksWithTheirComments) {
 
 TEST_F(Splice, NewEntriesSayWhatIsNotByDefault) {
     const auto added = [](Look& look) -> Result<> {
-        if (const auto made = add_effect(look, *find_effect("vignette"), "tonemap"); !made)
-            return failure(made.error());
+        DARKROOM_TRY(add_effect(look, *find_effect("vignette"), "tonemap"));
         return set(look, "vignette", "intensity", {0.75f});
     };
     EXPECT_EQ(edited("[[stack]]\r\neffect = \"tonemap\"\r\n", added),

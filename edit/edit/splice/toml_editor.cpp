@@ -69,14 +69,12 @@ std::string toml_key(std::string_view name) {
 Result<TomlEditor> TomlEditor::of(std::string text) {
     TomlEditor out;
     out.text_ = std::move(text);
-    if (Result<> done = out.rescan(); !done) return failure(std::move(done));
+    DARKROOM_TRY(out.rescan());
     return out;
 }
 
 Result<> TomlEditor::rescan() {
-    Result<std::vector<TomlItem>> items = items_of(text_);
-    if (!items) return failure(std::move(items));
-    items_ = std::move(*items);
+    DARKROOM_TRY_VALUE(items_, items_of(text_));
     return {};
 }
 
@@ -120,9 +118,8 @@ Result<> TomlEditor::set(const TomlPath& table, std::string_view key, std::strin
 
 Result<> TomlEditor::replace_value(const TomlPath& path, std::string_view value) {
     const std::string next = fmt::format("v = {}", value);
-    const auto wanted = items_of(next);
-    if (!wanted) return failure(wanted.error());
-    const Leaves old = leaves_of(items_, path), now = leaves_of(*wanted, {"v"});
+    DARKROOM_TRY_VALUE(const auto wanted, items_of(next));
+    const Leaves old = leaves_of(items_, path), now = leaves_of(wanted, {"v"});
     Leaves old_numbered;
     for (const auto& [own, span] : old) old_numbered[numbered(own)] = span;
     const auto path_of = [](const Leaves::value_type& leaf) { return leaf.first; };
@@ -165,7 +162,7 @@ Result<> TomlEditor::add(const TomlPath& table, std::string_view pair, std::span
         }
     if (table.empty()) return add_first(pair);
     if (table.size() > 1) return user_error(fmt::format("{}: there is no such table", shown(table)));
-    if (Result<> done = add_table(table[0]); !done) return done;
+    DARKROOM_TRY(add_table(table[0]));
     return add_line(items_.back(), pair);
 }
 
@@ -234,7 +231,7 @@ Result<std::size_t> TomlEditor::remove_table(const TomlPath& table) {
         else if (place != std::string::npos && begin < place)
             place -= size;
     }
-    if (Result<> done = rescan(); !done) return failure(std::move(done));
+    DARKROOM_TRY(rescan());
     return std::min(place, text_.size());
 }
 

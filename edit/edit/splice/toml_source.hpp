@@ -5,11 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom::edit {
 

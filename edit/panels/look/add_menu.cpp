@@ -241,9 +241,8 @@ MenuKeys take_keys(PanelState& state, std::size_t rows) {
 void take_look(PanelState& state, const std::filesystem::path& file) {
     ImGui::CloseCurrentPopup();
     state.edit(fmt::format("look {}", file.stem().string()), [&state, file](Look& look) -> Result<> {
-        Result<Look> read = state.looks->read(file);
-        if (!read) return failure(std::move(read));
-        edit::take_look(look, std::move(*read), file.parent_path(), state.document->options().folder);
+        DARKROOM_TRY_VALUE(Look read, state.looks->read(file));
+        edit::take_look(look, std::move(read), file.parent_path(), state.document->options().folder);
         return {};
     });
 }

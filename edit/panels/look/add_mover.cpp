@@ -82,11 +82,11 @@ void add(PanelState& state, const NewMover& wanted) {
         });
     state.edit(fmt::format("add {} {}", wanted.is_layer ? "layer" : "pulse", wanted.name),
                [&state, wanted](Look& look) -> Result<> {
-                   const Result<std::size_t> made =
-                       wanted.is_layer ? edit::add_layer(look, wanted.name, wanted.entry, wanted.parameter)
-                                       : edit::add_pulse(look, wanted.name, wanted.entry, wanted.parameter);
-                   if (!made) return failure(made.error());
-                   state.wanted_part = LookPart{.mover = {wanted.is_layer, *made}};
+                   DARKROOM_TRY_VALUE(const std::size_t made,
+                                      wanted.is_layer
+                                          ? edit::add_layer(look, wanted.name, wanted.entry, wanted.parameter)
+                                          : edit::add_pulse(look, wanted.name, wanted.entry, wanted.parameter));
+                   state.wanted_part = LookPart{.mover = {wanted.is_layer, made}};
                    return {};
                });
 }
@@ -101,9 +101,9 @@ void add_of_file(PanelState& state, const std::string& name) {
                           state.edit(fmt::format("add layer {}", name), [&state, name, file](Look& look) -> Result<> {
                               const LookOptions& options = state.document->options();
                               const std::string relative = file.lexically_proximate(options.folder).string();
-                              const Result<std::size_t> made = edit::add_layer_of(look, name, relative, options);
-                              if (!made) return failure(made.error());
-                              state.wanted_part = LookPart{.mover = {true, *made}};
+                              DARKROOM_TRY_VALUE(const std::size_t made,
+                                                 edit::add_layer_of(look, name, relative, options));
+                              state.wanted_part = LookPart{.mover = {true, made}};
                               return {};
                           });
                       }});

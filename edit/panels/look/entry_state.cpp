@@ -54,7 +54,7 @@ Result<> wire_to(Look& look, const std::string& entry, const std::string& wire, 
     std::string output = found->output;
     if (output.empty()) {
         output = output_name(look, other);
-        if (Result<> done = edit::set_wire(look, other, "output", output, options); !done) return done;
+        DARKROOM_TRY(edit::set_wire(look, other, "output", output, options));
     }
     if (is_previous) output += previous_suffix;
     return edit::set_wire(look, entry, wire, output, options);

@@ -71,8 +71,7 @@ class Groups {
             state_.edit(fmt::format("{} {} reset", name_, shown_name(group.name)),
                         [name = name_, rows = group.rows](Look& look) -> Result<> {
                             for (const ParamInfo* const row : rows)
-                                if (Result<> done = edit::reset_value(look, name, std::string(row->name)); !done)
-                                    return done;
+                                DARKROOM_TRY(edit::reset_value(look, name, std::string(row->name)));
                             return {};
                         });
         state_.note(fmt::format("{}/{}.reset", name_, group.name));
@@ -164,7 +163,7 @@ class Groups {
             fmt::format("{} {}", name_, shown_name(group.name)),
             [name = name_, rows = group.rows, words](Look& look) -> Result<> {
                 for (const ParamInfo* const row : rows)
-                    if (Result<> done = edit::set_value(look, name, std::string(row->name), words); !done) return done;
+                    DARKROOM_TRY(edit::set_value(look, name, std::string(row->name), words));
                 return {};
             },
             fmt::format("{}.{}", name_, group.name));

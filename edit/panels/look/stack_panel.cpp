@@ -335,9 +335,7 @@ class StackList {
         ImGui::SameLine(0, 0);
         if (icon_button("##duplicate", Icon::Duplicate, "Puts a copy after it.", true))
             state_.edit(fmt::format("duplicate {}", name), [&state = state_, name](Look& look) -> Result<> {
-                const Result<std::string> made = edit::duplicate_entry(look, name);
-                if (!made) return failure(made.error());
-                state.wanted = *made;
+                DARKROOM_TRY_VALUE(state.wanted, edit::duplicate_entry(look, name));
                 return {};
             });
         state_.note(fmt::format("stack/{}.duplicate", name));

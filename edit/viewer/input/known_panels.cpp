@@ -72,12 +72,11 @@ Result<KnownPanels> KnownPanels::read(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) return out;
     const std::string shown = darkroom::printable(file.string());
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = darkroom::max_toml_bytes});
-    if (!bytes) return failure(bytes.error());
-    const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    const Result<toml::table> tables = darkroom::parse_toml(text, shown);
-    if (!tables) return failure(tables.error());
-    for (const auto& [name, node] : *tables)
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes,
+                       darkroom::read_file(file, {.max_size = darkroom::max_toml_bytes}));
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    DARKROOM_TRY_VALUE(const toml::table tables, darkroom::parse_toml(text, shown));
+    for (const auto& [name, node] : tables)
         if (const std::optional<VkExtent2D> window = window_of(name.str()); window && node.is_table())
             out.set(*window, sizes_of(*node.as_table()));
     return out;

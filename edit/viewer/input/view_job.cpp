@@ -70,31 +70,24 @@ Result<> read_subject(ViewerJob& job, const ViewFlags& flags, const std::vector<
     const bool has_scene = std::ranges::any_of(inputs, is_scene);
     if (has_scene && inputs.size() > 1)
         return user_error(fmt::format("{}: one scene or model at a time", printable(inputs[1])));
-    const Result<darkroom::render::RenderDesc> desc = flags.drawn.desc();
-    if (!desc) return failure(desc.error());
-    const Result<std::uint64_t> seed = flags.drawn.seed();
-    if (!seed) return failure(seed.error());
-    const Result<darkroom::scene::OrbitOverride> orbit = flags.drawn.orbit();
-    if (!orbit) return failure(orbit.error());
+    DARKROOM_TRY_VALUE(const darkroom::render::RenderDesc desc, flags.drawn.desc());
+    DARKROOM_TRY_VALUE(const std::uint64_t seed, flags.drawn.seed());
+    DARKROOM_TRY_VALUE(const darkroom::scene::OrbitOverride orbit, flags.drawn.orbit());
     job.scene_desc = {
-        .render = *desc, .seed = *seed, .is_strict = flags.look.is_strict(), .named_files = flags.drawn.named_files()};
-    job.orbit = *orbit;
-    if (Result<> done = flags.time.read_to(job.time); !done) return done;
-    if (Result<> done = flags.frames_per_second.read_to(job.frame_desc.frames_per_second); !done) return done;
+        .render = desc, .seed = seed, .is_strict = flags.look.is_strict(), .named_files = flags.drawn.named_files()};
+    job.orbit = orbit;
+    DARKROOM_TRY(flags.time.read_to(job.time));
+    DARKROOM_TRY(flags.frames_per_second.read_to(job.frame_desc.frames_per_second));
     job.step = 1 / job.frame_desc.frames_per_second.value_or(usual_frames_per_second);
     if (has_scene) {
         job.scene = inputs.front();
         return {};
     }
-    Result<std::vector<darkroom::NumberedFile>> files = darkroom::expand_inputs(inputs);
-    if (!files) return failure(std::move(files));
-    job.frames = std::move(*files);
+    DARKROOM_TRY_VALUE(job.frames, darkroom::expand_inputs(inputs));
     const std::vector<std::string> eyes = flags.frame.eyes();
     if (eyes.size() > 1) return user_error("--eye both: allowed is one view at a time");
-    Result<darkroom::FrameOptions> options = flags.frame.options({}, eyes.front());
-    if (!options) return failure(std::move(options));
-    job.frame_desc.options = std::move(*options);
-    if (orbit->field_of_view) job.frame_desc.options.vertical_field_of_view = *orbit->field_of_view;
+    DARKROOM_TRY_VALUE(job.frame_desc.options, flags.frame.options({}, eyes.front()));
+    if (orbit.field_of_view) job.frame_desc.options.vertical_field_of_view = *orbit.field_of_view;
     job.frame_desc.options.keeps_halves = true;
     return {};
 }
@@ -130,7 +123,7 @@ Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path
     job.is_off = flags.look.is_off();
     if (flags.look.change_anything()) {
         const Result<> done = job.document->edit("the command line", [&](darkroom::Look& look) -> Result<> {
-            if (Result<> changed = flags.look.change(look, true); !changed) return changed;
+            DARKROOM_TRY(flags.look.change(look, true));
             if (!flags.look.ui_file().empty())
                 look.ui->document = std::filesystem::absolute(flags.look.ui_file()).string();
             return {};
@@ -139,9 +132,7 @@ Result<> read_look(ViewerJob& job, const ViewFlags& flags, std::filesystem::path
     }
     if (flags.look.events.empty()) return {};
     darkroom::Look look = job.document->look();
-    Result<Timeline> timeline = Timeline::read(flags.look.events, look);
-    if (!timeline) return failure(std::move(timeline));
-    job.timeline = std::move(*timeline);
+    DARKROOM_TRY_VALUE(job.timeline, Timeline::read(flags.look.events, look));
     return {};
 }
 
@@ -172,22 +163,20 @@ Result<> read_window(ViewerJob& job, const ViewFlags& flags) {
     if (flags.range == "high" && !flags.frames.is_given() && flags.screenshot.empty() &&
         flags.window_screenshot.empty())
         job.range = darkroom::window::DynamicRange::High;
-    if (Result<> done = flags.peak.read_to(job.peak_nits); !done) return done;
-    const Result<darkroom::KernelStage> stage = flags.device.stage();
-    if (!stage) return failure(stage.error());
-    job.kernels = *stage;
+    DARKROOM_TRY(flags.peak.read_to(job.peak_nits));
+    DARKROOM_TRY_VALUE(job.kernels, flags.device.stage());
     job.fuse = flags.device.is_fused();
     job.device = flags.device.name();
     job.turns = flags.turns;
     job.is_paused = flags.is_paused;
     job.is_full_size = flags.is_full_size;
-    if (Result<> done = read_frame_time(job, flags); !done) return done;
+    DARKROOM_TRY(read_frame_time(job, flags));
     job.obeys_input = flags.obeys_input;
     const std::string subject = (job.scene.empty() ? job.frames.front().path : job.scene).filename().string();
     job.window = {.title = fmt::format("{} - Darkroom", printable(subject)),
                   .size = job.scene_desc.render.extent,
                   .is_fullscreen = flags.is_fullscreen};
-    if (Result<> done = flags.frames.read_to(job.frames_to_show); !done) return done;
+    DARKROOM_TRY(flags.frames.read_to(job.frames_to_show));
     job.screenshot = flags.screenshot;
     job.window_screenshot = flags.window_screenshot;
     if (!flags.screenshot.empty() || !flags.window_screenshot.empty())
@@ -201,8 +190,7 @@ Result<> read_window(ViewerJob& job, const ViewFlags& flags) {
     std::ranges::copy(ui_files(look), std::back_inserter(inputs));
     const FileSet files(inputs);
     for (const std::filesystem::path& out : {job.screenshot, job.window_screenshot})
-        if (!out.empty())
-            if (Result<> done = check_output(out, files); !done) return done;
+        if (!out.empty()) DARKROOM_TRY(check_output(out, files));
     return {};
 }
 
@@ -210,11 +198,10 @@ Result<> read_window(ViewerJob& job, const ViewFlags& flags) {
 
 Result<ViewerJob> job_of(const ViewFlags& flags) {
     ViewerJob job{.is_edit = flags.is_edit};
-    const Result<Named> named = named_by(flags);
-    if (!named) return failure(named.error());
-    if (Result<> done = read_subject(job, flags, named->inputs); !done) return failure(std::move(done));
-    if (Result<> done = read_look(job, flags, named->look); !done) return failure(std::move(done));
-    if (Result<> done = read_window(job, flags); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(const Named named, named_by(flags));
+    DARKROOM_TRY(read_subject(job, flags, named.inputs));
+    DARKROOM_TRY(read_look(job, flags, named.look));
+    DARKROOM_TRY(read_window(job, flags));
     return job;
 }
 

@@ -178,7 +178,7 @@ void Viewer::toggle_effects(std::uint32_t number) {
     const Result<> done = document_->edit(what, [&](Look& look) -> Result<> {
         const std::uint32_t word = is_any_on ? 0 : 1;
         for (const std::string& name : chosen)
-            if (Result<> set = darkroom::edit::set_state(look, name, "enabled", {&word, 1}); !set) return set;
+            DARKROOM_TRY(darkroom::edit::set_state(look, name, "enabled", {&word, 1}));
         return {};
     });
     settle("switch", done);

@@ -12,8 +12,7 @@ Result<ComparedPicture> ComparedPicture::create(darkroom::Device& device, darkro
     out.picture_ = std::move(picture);
     const darkroom::Picture& read = out.picture_.picture;
     const darkroom::DevelopInput input{.extent = {read.width, read.height}, .color = read.pixels};
-    if (Result<> done = out.upload_.prepare(device.context(), input, darkroom::layers_of(input)); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY(out.upload_.prepare(device.context(), input, darkroom::layers_of(input)));
     return out;
 }
 

@@ -28,10 +28,9 @@ FrameSource::~FrameSource() {
 Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& device,
                                                          std::vector<darkroom::NumberedFile> files, const Desc& desc) {
     std::unique_ptr<FrameSource> out(new FrameSource(device, std::move(files), desc));
-    Result<std::shared_ptr<Decoded>> first = out->decode(0);
-    if (!first) return failure(std::move(first));
-    out->shown_ = *first;
-    out->kept_.push_front(std::move(*first));
+    DARKROOM_TRY_VALUE(std::shared_ptr<Decoded> first, out->decode(0));
+    out->shown_ = first;
+    out->kept_.push_front(std::move(first));
     out->warnings_ = out->shown_->file.warnings;
     if (out->files_.size() > 1) out->start();
     return out;
@@ -45,11 +44,10 @@ void FrameSource::start() {
 
 // Whatever a file makes a decoder do, the thread that reads goes on.
 Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const try {
-    Result<darkroom::FrameFile> file = read_frame(files_[number], desc_.options);
-    if (!file) return failure(std::move(file));
+    DARKROOM_TRY_VALUE(darkroom::FrameFile file, read_frame(files_[number], desc_.options));
     auto out = std::make_shared<Decoded>();
     out->number = number;
-    out->file = std::move(*file);
+    out->file = std::move(file);
     out->lights = take_lights(out->file);
     out->input = develop_input(out->file, out->lights);
     if (!out->file.frame_index)

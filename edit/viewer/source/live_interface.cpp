@@ -41,19 +41,15 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
     composer_ = &composer;
     console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print_, .folder = folder_});
     if (std::filesystem::path(ui_.document).extension() == ".svg") {
-        auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = is_headless_});
-        if (!loaded) return failure(std::move(loaded));
-        document_ = std::move(*loaded);
+        DARKROOM_TRY_VALUE(document_, darkroom::HudDocument::load(ui_.document, {.is_headless = is_headless_}));
     }
     if (ui_.controllers.empty()) return {};
     const auto set_class = [this](std::string_view id, std::string_view name, bool is_on) {
         return document_ != nullptr && document_->set_class(id, name, is_on);
     };
-    auto made = darkroom::Controllers::create(*console_, {.print = print_, .set_class = set_class});
-    if (!made) return failure(std::move(made));
-    controllers_.emplace(std::move(*made));
-    for (const std::string& file : ui_.controllers)
-        if (Result<> done = controllers_->load(file); !done) return done;
+    DARKROOM_TRY_VALUE(auto made, darkroom::Controllers::create(*console_, {.print = print_, .set_class = set_class}));
+    controllers_.emplace(std::move(made));
+    for (const std::string& file : ui_.controllers) DARKROOM_TRY(controllers_->load(file));
     return {};
 }
 
@@ -66,7 +62,7 @@ Result<> LiveInterface::advance(double time, const HeadMotion& motion, bool is_m
     // Its degrees grow to the right, a camera's to the left.
     const darkroom::Vec2 offset =
         inertia_.step(motion.delta_time, -motion.yaw, motion.is_on_ground, motion.velocity_up);
-    if (Result<> done = move_interface(*composer_, offset); !done) return done;
+    DARKROOM_TRY(move_interface(*composer_, offset));
     if (controllers_) controllers_->frame({.time = time, .is_hud_visible = !is_menu_open, .game = &game_});
     if (document_ != nullptr) {
         for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
@@ -105,28 +101,23 @@ Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent, float sc
     }
     if (shown_ != nullptr && shown_extent_.width == extent.width && shown_extent_.height == extent.height)
         return shown_;
-    auto made = darkroom::read_ui_image(ui_.document, extent.width, extent.height);
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height));
     shown_extent_ = extent;
-    return shown_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(*made));
+    return shown_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(made));
 }
 
 Result<> LiveInterface::resize(VkExtent2D extent) {
     if (image_.handle != VK_NULL_HANDLE && has_extent(image_, extent)) return {};
-    Result<gpu::Image> made = gpu::Image::create(
-        device_.context(),
-        {.name = "interface",
-         .format = image_format,
-         .extent = {extent.width, extent.height, 1},
-         .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    if (!made) return failure(std::move(made));
-    image_ = std::move(*made);
+    DARKROOM_TRY_VALUE(image_, gpu::Image::create(device_.context(), {.name = "interface",
+                                                                      .format = image_format,
+                                                                      .extent = {extent.width, extent.height, 1},
+                                                                      .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                               VK_IMAGE_USAGE_TRANSFER_DST_BIT |
+                                                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
     for (gpu::Buffer& buffer : staging_) {
-        Result<gpu::Buffer> memory =
-            gpu::Buffer::create(device_.context(), VkDeviceSize{4} * extent.width * extent.height,
-                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "interface");
-        if (!memory) return failure(std::move(memory));
-        buffer = std::move(*memory);
+        DARKROOM_TRY_VALUE(
+            buffer, gpu::Buffer::create(device_.context(), VkDeviceSize{4} * extent.width * extent.height,
+                                        VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "interface"));
     }
     layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
     uploaded_.reset();
@@ -135,13 +126,12 @@ Result<> LiveInterface::resize(VkExtent2D extent) {
 
 Result<> LiveInterface::scale_to(VkCommandBuffer commands, VkExtent2D of_frame) {
     if (scaled_.handle == VK_NULL_HANDLE || !has_extent(scaled_, of_frame)) {
-        Result<gpu::Image> made = gpu::Image::create(
-            device_.context(), {.name = "interface, scaled",
-                                .format = image_format,
-                                .extent = {of_frame.width, of_frame.height, 1},
-                                .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-        if (!made) return failure(std::move(made));
-        scaled_ = std::move(*made);
+        DARKROOM_TRY_VALUE(scaled_,
+                           gpu::Image::create(device_.context(),
+                                              {.name = "interface, scaled",
+                                               .format = image_format,
+                                               .extent = {of_frame.width, of_frame.height, 1},
+                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     }
     const gpu::Context& context = device_.context();
     const auto end_of = [](const gpu::Image& of) {
@@ -173,7 +163,7 @@ darkroom::ImageRef LiveInterface::reference_to(const gpu::Image& image) const {
 
 Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent,
                                                  VkExtent2D of_frame, float scale) {
-    if (Result<> done = resize(extent); !done) return failure(std::move(done));
+    DARKROOM_TRY(resize(extent));
     recorded_extent_ = extent;
     recorded_scale_ = scale;
     VkExtent2D drawn = extent;
@@ -203,7 +193,7 @@ Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::
         gpu::transition(context, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout_);
     }
     if (has_extent(image_, of_frame)) return reference_to(image_);
-    if (Result<> done = scale_to(commands, of_frame); !done) return failure(std::move(done));
+    DARKROOM_TRY(scale_to(commands, of_frame));
     return reference_to(scaled_);
 }
 

@@ -43,12 +43,11 @@ LookView::LookView(darkroom::Device& device, Desc desc)
 }
 
 Result<> LookView::show(const darkroom::Look& look) {
-    const Result<darkroom::Followed> followed =
-        darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.keeps});
-    if (!followed) return failure(followed.error());
+    DARKROOM_TRY_VALUE(const darkroom::Followed followed,
+                       darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.keeps}));
     shown_ = look;
     is_of_look_ = false;
-    return followed->needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
+    return followed.needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
 }
 
 Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui, bool is_kept) {
@@ -86,8 +85,7 @@ Result<> LookView::compile(const CompileDesc& desc) {
         least_pending_ = composer_.pending().is_pending ? min_of(least_pending_, asked) : asked;
         return composer_.compile_later(compiled_);
     }
-    const Result<darkroom::Plan> plan = composer_.compile(compiled_);
-    if (!plan) return failure(plan.error());
+    DARKROOM_TRY(composer_.compile(compiled_));
     is_compiled_ = true;
     return {};
 }
@@ -106,13 +104,11 @@ bool LookView::must_wait(VkExtent2D extent) const {
 
 Result<> LookView::resize(VkExtent2D extent) {
     if (picture_.handle != VK_NULL_HANDLE && !must_wait(extent)) return {};
-    Result<darkroom::gpu::Image> made =
-        darkroom::gpu::Image::create(device_.context(), {.name = "picture",
-                                                         .format = compiled_.target.format,
-                                                         .extent = {extent.width, extent.height, 1},
-                                                         .usage = compiled_.target.usage});
-    if (!made) return failure(std::move(made));
-    picture_ = std::move(*made);
+    DARKROOM_TRY_VALUE(picture_,
+                       darkroom::gpu::Image::create(device_.context(), {.name = "picture",
+                                                                        .format = compiled_.target.format,
+                                                                        .extent = {extent.width, extent.height, 1},
+                                                                        .usage = compiled_.target.usage}));
     is_drawn_ = is_of_look_ = false;
     return {};
 }
@@ -162,11 +158,11 @@ Result<> LookView::watch(const darkroom::PlanImage* image, std::uint32_t mip_lev
         {.id = watch_id, .image = image->name, .mip_level = mip_level, .target = {watched_format, usage}});
     if (watched_.handle != VK_NULL_HANDLE && !must_wait_to_watch(image, mip_level)) return {};
     const VkExtent2D extent = extent_of(*image, mip_level);
-    Result<darkroom::gpu::Image> made = darkroom::gpu::Image::create(
-        device_.context(),
-        {.name = "watched", .format = watched_format, .extent = {extent.width, extent.height, 1}, .usage = usage});
-    if (!made) return failure(std::move(made));
-    watched_ = std::move(*made);
+    DARKROOM_TRY_VALUE(
+        watched_,
+        darkroom::gpu::Image::create(
+            device_.context(),
+            {.name = "watched", .format = watched_format, .extent = {extent.width, extent.height, 1}, .usage = usage}));
     return {};
 }
 

@@ -63,26 +63,24 @@ SceneSource::SceneSource(darkroom::Device& device, std::filesystem::path file, c
 Result<std::unique_ptr<SceneSource>> SceneSource::create(darkroom::Device& device, const std::filesystem::path& file,
                                                          const Desc& desc) {
     std::unique_ptr<SceneSource> out(new SceneSource(device, file, desc));
-    if (Result<> done = out->read(); !done) return failure(std::move(done));
+    DARKROOM_TRY(out->read());
     return out;
 }
 
 Result<> SceneSource::read() {
-    Result<scene::Scene> read = scene::read_scene(
-        file_, {.is_strict = desc_.is_strict, .warnings = &warnings_, .named_files = desc_.named_files});
-    if (!read) return failure(std::move(read));
-    scene_ = std::move(*read);
+    DARKROOM_TRY_VALUE(
+        scene_, scene::read_scene(
+                    file_, {.is_strict = desc_.is_strict, .warnings = &warnings_, .named_files = desc_.named_files}));
     assets_ = scene::load_assets(scene_);
     if (scene::is_model_path(file_) && !assets_.model_errors.empty()) return failure(assets_.model_errors.front());
-    if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
+    DARKROOM_TRY(scene::check_snapshot(scene_, assets_));
     std::ranges::copy(assets_.warnings, std::back_inserter(warnings_));
     is_moved_ = is_moved_by_time(scene_, assets_);
     render::RenderDesc desc = desc_.render;
     desc.output = render::Output::Hdr;
     desc.draw = {};  // switches come with every frame
-    Result<render::Renderer> made = render::Renderer::create(device_, scene_, assets_, desc);
-    if (!made) return failure(std::move(made));
-    linear_.emplace(std::move(*made));
+    DARKROOM_TRY_VALUE(render::Renderer made, render::Renderer::create(device_, scene_, assets_, desc));
+    linear_.emplace(std::move(made));
     return linear_->warm_up();
 }
 
@@ -115,8 +113,8 @@ Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
     if (!is_prepared_) std::ranges::copy(snapshot_.warnings, std::back_inserter(warnings_));
     // compile_desc() asks the linear one, even before it is shown.
     if (!std::exchange(is_prepared_, true) && is_display_)
-        if (Result<> done = use(false, {.draw = {.has_shadows = moment.draw.has_shadows}}, extent); !done) return done;
-    if (Result<> done = use(is_display_, moment, extent); !done) return done;
+        DARKROOM_TRY(use(false, {.draw = {.has_shadows = moment.draw.has_shadows}}, extent));
+    DARKROOM_TRY(use(is_display_, moment, extent));
     drawn_.emplace(moment, extent);
     return {};
 }
@@ -127,19 +125,17 @@ Result<> SceneSource::use(bool is_display, const LiveMoment& moment, VkExtent2D 
         desc.output = render::Output::Display;
         desc.draw = {};
         desc.extent = extent;
-        Result<render::Renderer> made = linear_->sharing(desc);
-        if (!made) return failure(std::move(made));
-        display_.emplace(std::move(*made));
-        if (Result<> done = display_->warm_up(); !done) return done;
+        DARKROOM_TRY_VALUE(render::Renderer made, linear_->sharing(desc));
+        display_.emplace(std::move(made));
+        DARKROOM_TRY(display_->warm_up());
     }
     render::Renderer& used = is_display ? *display_ : *linear_;
     const auto [width, height] = used.desc().extent;
-    if (width != extent.width || height != extent.height)
-        if (Result<> done = used.resize(extent); !done) return done;
+    if (width != extent.width || height != extent.height) DARKROOM_TRY(used.resize(extent));
     render::DrawOptions draw = moment.draw;
     draw.has_grid = draw.has_grid && scene_.has_grid;
     if (is_display) draw.mip_bias = 0;
-    if (Result<> done = used.set(draw); !done) return done;
+    DARKROOM_TRY(used.set(draw));
     // Its own shaders gather nothing.
     return used.prepare(snapshot_, is_display ? render::FrameJitter{} : moment.jitter);
 }

@@ -85,24 +85,19 @@ Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, D
 Result<std::unique_ptr<Thumbnails>> Thumbnails::create(darkroom::Device& device, const darkroom::Frame& frame,
                                                        Desc desc) {
     namespace gpu = darkroom::gpu;
-    Result<darkroom::FrameReadback> read = darkroom::FrameReadback::create(device.context(), frame);
-    if (!read) return failure(std::move(read));
-    std::unique_ptr<Thumbnails> out(new Thumbnails(device, frame, std::move(desc), std::move(*read)));
+    DARKROOM_TRY_VALUE(darkroom::FrameReadback read, darkroom::FrameReadback::create(device.context(), frame));
+    std::unique_ptr<Thumbnails> out(new Thumbnails(device, frame, std::move(desc), std::move(read)));
     const std::size_t count = darkroom::all_effects().size() + out->desc_.other_looks;
     const auto rows = static_cast<std::uint32_t>((count + columns - 1) / columns);
     const VkExtent3D extent{out->extent_.width * static_cast<std::uint32_t>(columns), out->extent_.height * rows, 1};
-    Result<gpu::Image> atlas =
-        gpu::Image::create(device.context(), {.name = "thumbnails",
-                                              .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                              .extent = extent,
-                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!atlas) return failure(std::move(atlas));
-    out->atlas_ = std::move(*atlas);
+    DARKROOM_TRY_VALUE(out->atlas_, gpu::Image::create(device.context(), {.name = "thumbnails",
+                                                                          .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                                          .extent = extent,
+                                                                          .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                                   VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     const VkDeviceSize bytes = VkDeviceSize{4} * out->extent_.width * out->extent_.height * count;
-    Result<gpu::Buffer> staging = gpu::Buffer::create(device.context(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                      gpu::Memory::Kind::Upload, "thumbnails");
-    if (!staging) return failure(std::move(staging));
-    out->staging_ = std::move(*staging);
+    DARKROOM_TRY_VALUE(out->staging_, gpu::Buffer::create(device.context(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                          gpu::Memory::Kind::Upload, "thumbnails"));
     return out;
 }
 
@@ -204,14 +199,11 @@ void Thumbnails::make_all(const std::stop_token& token) {
         }
         const EffectInfo* const* const effect = std::get_if<const EffectInfo*>(&subject);
         const auto make = [&]() -> Result<darkroom::DevelopedPicture> {
-            Result<Look> with = effect != nullptr ? with_effect(desc_.look, **effect)
-                                                  : desc_.read(std::get<std::filesystem::path>(subject));
-            if (!with) return failure(std::move(with));
-            if (const auto followed = darkroom::follow(shown, *with, composer); !followed)
-                return failure(followed.error());
-            shown = std::move(*with);
-            if (const auto plan = composer.compile(darkroom::compile_desc_for(device_, small.input, desc)); !plan)
-                return failure(plan.error());
+            DARKROOM_TRY_VALUE(Look with, effect != nullptr ? with_effect(desc_.look, **effect)
+                                                            : desc_.read(std::get<std::filesystem::path>(subject)));
+            DARKROOM_TRY(darkroom::follow(shown, with, composer));
+            shown = std::move(with);
+            DARKROOM_TRY(composer.compile(darkroom::compile_desc_for(device_, small.input, desc)));
             Result<darkroom::DevelopedPicture> made = developer.develop(composer, small.input);
             if (made && (made->extent.width != extent_.width || made->extent.height != extent_.height))
                 return darkroom::user_error(fmt::format("its picture has {}x{} pixels where the frame has {}x{}",

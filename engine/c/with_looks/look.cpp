@@ -36,19 +36,18 @@ ResourceLoader loader_of(DarkroomLoadResource load, void* user) {
 /// Runs `work` with the options, then hands the warnings over.
 template <class Work>
 Result<> with_options(const DarkroomLookOptions* given, const Work& work) {
-    const auto options = read_or_default(given, "DarkroomLookOptions");
-    if (!options) return failure(options.error());
+    DARKROOM_TRY_VALUE(const auto options, read_or_default(given, "DarkroomLookOptions"));
     std::vector<std::string> warnings;
-    LookOptions out{.is_strict = options->is_strict != 0,
+    LookOptions out{.is_strict = options.is_strict != 0,
                     .warnings = &warnings,
-                    .allows_custom_effects = options->allows_custom_effects != 0,
-                    .allows_modulation = options->no_modulation == 0,
-                    .load_resource = loader_of(options->load_resource, options->user),
-                    .reads_tables = options->no_tables == 0,
-                    .folder = string(options->folder)};
+                    .allows_custom_effects = options.allows_custom_effects != 0,
+                    .allows_modulation = options.no_modulation == 0,
+                    .load_resource = loader_of(options.load_resource, options.user),
+                    .reads_tables = options.no_tables == 0,
+                    .folder = string(options.folder)};
     Result<> done = work(out);
-    if (options->warn != nullptr)
-        for (const std::string& warning : warnings) options->warn(options->user, warning.c_str());
+    if (options.warn != nullptr)
+        for (const std::string& warning : warnings) options.warn(options.user, warning.c_str());
     return done;
 }
 
@@ -63,16 +62,14 @@ struct Keeps {
     ApplyOptions options;
 };
 Result<> read_options(const DarkroomApplyOptions* given, Keeps& out) {
-    const auto options = read_or_default(given, "DarkroomApplyOptions");
-    if (!options) return failure(options.error());
-    if (options->keep_count > max_elements)
-        return user_error(fmt::format("keep_count = {}: allowed is at most {}", options->keep_count, max_elements));
-    for (std::uint32_t i = 0; i < options->keep_count; ++i) {
-        if (auto ok = needs("keeps", options->keeps, "a name of keeps", options->keeps ? options->keeps[i] : ""); !ok)
-            return ok;
-        out.names.emplace_back(options->keeps[i]);
+    DARKROOM_TRY_VALUE(const auto options, read_or_default(given, "DarkroomApplyOptions"));
+    if (options.keep_count > max_elements)
+        return user_error(fmt::format("keep_count = {}: allowed is at most {}", options.keep_count, max_elements));
+    for (std::uint32_t i = 0; i < options.keep_count; ++i) {
+        DARKROOM_TRY(needs("keeps", options.keeps, "a name of keeps", options.keeps ? options.keeps[i] : ""));
+        out.names.emplace_back(options.keeps[i]);
     }
-    out.options = {.keeps_what_is_off = options->keeps_what_is_off != 0, .keeps = out.names};
+    out.options = {.keeps_what_is_off = options.keeps_what_is_off != 0, .keeps = out.names};
     return {};
 }
 
@@ -85,16 +82,15 @@ using namespace darkroom::c;
 
 DarkroomResult darkroom_look_default(DarkroomLookOrder order, DarkroomLook* look) {
     return call("darkroom_look_default", [&]() -> Result<> {
-        if (auto ok = needs("look", look); !ok) return ok;
-        const auto kind = enumerator<LookOrder>(order, DARKROOM_LOOK_ORDER_SCENE_LINEAR, "order");
-        if (!kind) return failure(kind.error());
-        return give(default_look(*kind), look);
+        DARKROOM_TRY(needs("look", look));
+        DARKROOM_TRY_VALUE(const auto kind, enumerator<LookOrder>(order, DARKROOM_LOOK_ORDER_SCENE_LINEAR, "order"));
+        return give(default_look(kind), look);
     });
 }
 
 DarkroomResult darkroom_look_default_of_traced_light(DarkroomLook* look) {
     return call("darkroom_look_default_of_traced_light", [&]() -> Result<> {
-        if (auto ok = needs("look", look); !ok) return ok;
+        DARKROOM_TRY(needs("look", look));
         return give(default_look_of_traced_light(), look);
     });
 }
@@ -102,7 +98,7 @@ DarkroomResult darkroom_look_default_of_traced_light(DarkroomLook* look) {
 DarkroomResult darkroom_look_parse(const char* text, const char* shown_name, const DarkroomLookOptions* options,
                                    DarkroomLook* look) {
     return call("darkroom_look_parse", [&]() -> Result<> {
-        if (auto ok = needs("text", text, "shown_name", shown_name, "look", look); !ok) return ok;
+        DARKROOM_TRY(needs("text", text, "shown_name", shown_name, "look", look));
         return with_options(options,
                             [&](const LookOptions& use) { return give(parse_look(text, shown_name, use), look); });
     });
@@ -110,7 +106,7 @@ DarkroomResult darkroom_look_parse(const char* text, const char* shown_name, con
 
 DarkroomResult darkroom_look_read(const char* path, const DarkroomLookOptions* options, DarkroomLook* look) {
     return call("darkroom_look_read", [&]() -> Result<> {
-        if (auto ok = needs("path", path, "look", look); !ok) return ok;
+        DARKROOM_TRY(needs("path", path, "look", look));
         return with_options(options, [&](const LookOptions& use) { return give(read_look(path, use), look); });
     });
 }
@@ -127,17 +123,16 @@ const char* darkroom_look_write(DarkroomLook look) {
 
 DarkroomResult darkroom_look_set_order(DarkroomLook look, DarkroomLookOrder order) {
     return call("darkroom_look_set_order", [&]() -> Result<> {
-        if (auto ok = needs("look", look); !ok) return ok;
-        const auto kind = enumerator<LookOrder>(order, DARKROOM_LOOK_ORDER_SCENE_LINEAR, "order");
-        if (!kind) return failure(kind.error());
-        set_order(look->look, *kind);
+        DARKROOM_TRY(needs("look", look));
+        DARKROOM_TRY_VALUE(const auto kind, enumerator<LookOrder>(order, DARKROOM_LOOK_ORDER_SCENE_LINEAR, "order"));
+        set_order(look->look, kind);
         return {};
     });
 }
 
 DarkroomResult darkroom_look_switch_off(DarkroomLook look) {
     return call("darkroom_look_switch_off", [&]() -> Result<> {
-        if (auto ok = needs("look", look); !ok) return ok;
+        DARKROOM_TRY(needs("look", look));
         look->look = switched_off(look->look);
         return {};
     });
@@ -145,7 +140,7 @@ DarkroomResult darkroom_look_switch_off(DarkroomLook look) {
 
 DarkroomResult darkroom_look_exposure(DarkroomLook look, float* exposure) {
     return call("darkroom_look_exposure", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "exposure", exposure); !ok) return ok;
+        DARKROOM_TRY(needs("look", look, "exposure", exposure));
         *exposure = exposure_of(look->look);
         return {};
     });
@@ -153,7 +148,7 @@ DarkroomResult darkroom_look_exposure(DarkroomLook look, float* exposure) {
 
 DarkroomResult darkroom_look_add_ui(DarkroomLook look) {
     return call("darkroom_look_add_ui", [&]() -> Result<> {
-        if (auto ok = needs("look", look); !ok) return ok;
+        DARKROOM_TRY(needs("look", look));
         add_ui(look->look);
         return {};
     });
@@ -161,14 +156,14 @@ DarkroomResult darkroom_look_add_ui(DarkroomLook look) {
 
 DarkroomResult darkroom_look_lay_over(DarkroomLook look, const char* file, const DarkroomLookOptions* options) {
     return call("darkroom_look_lay_over", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "file", file); !ok) return ok;
+        DARKROOM_TRY(needs("look", look, "file", file));
         return with_options(options, [&](const LookOptions& use) { return lay_over(look->look, file, use); });
     });
 }
 
 DarkroomResult darkroom_look_override(DarkroomLook look, const char* key, const char* value) {
     return call("darkroom_look_override", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "key", key, "value", value); !ok) return ok;
+        DARKROOM_TRY(needs("look", look, "key", key, "value", value));
         const LookOverride one{.key = key, .text = value, .shown = key};
         return override_look(look->look, std::span(&one, 1));
     });
@@ -176,19 +171,17 @@ DarkroomResult darkroom_look_override(DarkroomLook look, const char* key, const 
 
 DarkroomResult darkroom_look_place(DarkroomLook look, const char* effect) {
     return call("darkroom_look_place", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "effect", effect); !ok) return ok;
-        const auto info = effect_named(effect);
-        if (!info) return failure(info.error());
-        return place_entry(look->look, flat_entry(**info, LookOrder::SceneLinear));
+        DARKROOM_TRY(needs("look", look, "effect", effect));
+        DARKROOM_TRY_VALUE(const auto info, effect_named(effect));
+        return place_entry(look->look, flat_entry(*info, LookOrder::SceneLinear));
     });
 }
 
 DarkroomResult darkroom_look_place_custom(DarkroomLook look, const char* file) {
     return call("darkroom_look_place_custom", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "file", file); !ok) return ok;
-        auto entry = custom_entry(file);
-        if (!entry) return failure(std::move(entry));
-        return place_entry(look->look, std::move(*entry));
+        DARKROOM_TRY(needs("look", look, "file", file));
+        DARKROOM_TRY_VALUE(auto entry, custom_entry(file));
+        return place_entry(look->look, std::move(entry));
     });
 }
 
@@ -202,9 +195,9 @@ const char* darkroom_look_entry_name(DarkroomLook look, uint32_t index) {
 
 DarkroomResult darkroom_look_apply(DarkroomLook look, DarkroomComposer composer, const DarkroomApplyOptions* given) {
     return call("darkroom_look_apply", [&]() -> Result<> {
-        if (auto ok = needs("look", look, "composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("look", look, "composer", composer));
         Keeps keeps;
-        if (auto ok = read_options(given, keeps); !ok) return ok;
+        DARKROOM_TRY(read_options(given, keeps));
         return apply(look->look, composer->composer, keeps.options);
     });
 }
@@ -212,12 +205,11 @@ DarkroomResult darkroom_look_apply(DarkroomLook look, DarkroomComposer composer,
 DarkroomResult darkroom_look_follow(DarkroomLook was, DarkroomLook is, DarkroomComposer composer,
                                     const DarkroomApplyOptions* given, VkBool32* needs_compile) {
     return call("darkroom_look_follow", [&]() -> Result<> {
-        if (auto ok = needs("was", was, "is", is, "composer", composer); !ok) return ok;
+        DARKROOM_TRY(needs("was", was, "is", is, "composer", composer));
         Keeps keeps;
-        if (auto ok = read_options(given, keeps); !ok) return ok;
-        const auto followed = follow(was->look, is->look, composer->composer, keeps.options);
-        if (!followed) return failure(followed.error());
-        if (needs_compile != nullptr) *needs_compile = followed->needs_compile;
+        DARKROOM_TRY(read_options(given, keeps));
+        DARKROOM_TRY_VALUE(const auto followed, follow(was->look, is->look, composer->composer, keeps.options));
+        if (needs_compile != nullptr) *needs_compile = followed.needs_compile;
         return {};
     });
 }

@@ -35,7 +35,7 @@ graph::ImportState state_of(const ImageRef& image) {
 }  // namespace
 
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
-    if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
+    DARKROOM_TRY(check_frame(program_of(), desc_.compile, frame));
     find_watched(frame);
     const VkExtent2D extent = frame.color.used_region().extent;
     Camera camera = frame.camera;

@@ -48,14 +48,13 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
                                              ChainDesc desc, std::span<const plan::Entry> values) {
     std::unique_ptr<Chain> chain(new Chain(context, worker, std::move(desc)));
     const plan::Program& program = chain->program_of();
-    auto compiled = program.graph.compile(plan::largest_extents(chain->desc_.compile), graph::measure_on(context));
-    if (!compiled) return failure(std::move(compiled));
-    chain->compiled_.emplace(std::move(*compiled));
+    DARKROOM_TRY_VALUE(auto compiled,
+                       program.graph.compile(plan::largest_extents(chain->desc_.compile), graph::measure_on(context)));
+    chain->compiled_.emplace(std::move(compiled));
     chain->schedule_.emplace(*chain->compiled_);
-    if (auto ok = chain->desc_.program->make_tables(context, chain->desc_.older.get()); !ok)
-        return failure(std::move(ok));
-    if (auto ok = chain->make_kernels(values); !ok) return failure(std::move(ok));
-    if (auto ok = chain->make_resources(histories); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(chain->desc_.program->make_tables(context, chain->desc_.older.get()));
+    DARKROOM_TRY(chain->make_kernels(values));
+    DARKROOM_TRY(chain->make_resources(histories));
     chain->desc_.older.reset();
     chain->plan_ = plan::describe_program(program, *chain->compiled_, chain->desc_.compile, pointers_to(values));
     return chain;
@@ -133,7 +132,7 @@ Result<> Chain::build_lean() {
                 return kernels.find(shape, desc_.clock->recordings, desc_.clock->max_unfinished) != nullptr;
             };
             if (is_there()) continue;
-            if (auto ok = kernels.build(context_, shape); !ok) return ok;
+            DARKROOM_TRY(kernels.build(context_, shape));
             static_cast<void>(is_there());
         }
     }
@@ -141,9 +140,8 @@ Result<> Chain::build_lean() {
 }
 
 Result<> Chain::make_resources(graph::HistoryPool& histories) {
-    auto physical = graph::Physical::create(context_, *compiled_, desc_.compile.views, histories);
-    if (!physical) return failure(std::move(physical));
-    physical_.emplace(std::move(*physical));
+    DARKROOM_TRY_VALUE(auto physical, graph::Physical::create(context_, *compiled_, desc_.compile.views, histories));
+    physical_.emplace(std::move(physical));
     prepared_.resize(program_of().passes.size());
     has_history_.resize(entries_.size());
     watched_.resize(desc_.compile.watches.size());
@@ -167,14 +165,10 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     slot_stride_ = at;
     words_.resize(max_words + 1);
     custom_.resize(plan::max_custom_vectors);
-    auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
-                                      gpu::Memory::Kind::Constants, "blocks");
-    if (!blocks) return failure(std::move(blocks));
-    blocks_ = std::move(*blocks);
-    auto copies = ValueCopies::create(context_, program_of().values, desc_.slots);
-    if (!copies) return failure(std::move(copies));
-    value_copies_ = std::move(*copies);
-    if (auto ok = make_sets(); !ok) return ok;
+    DARKROOM_TRY_VALUE(blocks_, gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
+                                                    gpu::Memory::Kind::Constants, "blocks"));
+    DARKROOM_TRY_VALUE(value_copies_, ValueCopies::create(context_, program_of().values, desc_.slots));
+    DARKROOM_TRY(make_sets());
     return make_timers();
 }
 
@@ -193,18 +187,14 @@ Result<> Chain::make_sets() {
         layouts.insert(layouts.end(), desc_.slots, desc_.program->kernels[i]->complete().set_layout());
     }
     written_.resize(written);
-    auto sets = gpu::DescriptorSets::create(context_, layouts);
-    if (!sets) return failure(std::move(sets));
-    sets_ = std::move(*sets);
+    DARKROOM_TRY_VALUE(sets_, gpu::DescriptorSets::create(context_, layouts));
     return {};
 }
 
 Result<> Chain::make_timers() {
     if (!desc_.has_timers || context_.traits.timestamp_period_ns <= 0) return {};
     const auto marks = static_cast<std::uint32_t>(program_of().passes.size() + 1);
-    auto timers = gpu::Timers::create(context_, desc_.slots, marks);
-    if (!timers) return failure(std::move(timers));
-    timers_ = std::move(*timers);
+    DARKROOM_TRY_VALUE(timers_, gpu::Timers::create(context_, desc_.slots, marks));
     timed_.resize(desc_.slots);
     for (Timed& timed : timed_) timed.passes.reserve(marks);
     milliseconds_.resize(marks);

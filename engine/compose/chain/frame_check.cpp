@@ -93,9 +93,9 @@ Result<> check_region(const Given& given) {
 
 Result<> check_picture(const Given& given, const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
     const ImageRef& image = *given.image;
-    if (auto ok = check_handles(given); !ok) return ok;
-    if (auto ok = check_state(given, use_of(desc, given).format, "as compiled"); !ok) return ok;
-    if (auto ok = check_region(given); !ok) return ok;
+    DARKROOM_TRY(check_handles(given));
+    DARKROOM_TRY(check_state(given, use_of(desc, given).format, "as compiled"));
+    DARKROOM_TRY(check_region(given));
     if (image.layer_count != 1) return refused(given, ".layer_count is {}: allowed is 1", image.layer_count);
     const VkExtent2D extent = image.used_region().extent, color = frame.color.used_region().extent;
     const bool is_target = given.which.kind == Kind::Target;
@@ -126,12 +126,12 @@ Result<> check_picture(const Given& given, const plan::Program& program, const C
 
 Result<> check_cascades(const Given& given, const Light& light) {
     const ImageRef& image = *given.image;
-    if (auto ok = check_handles(given); !ok) return ok;
+    DARKROOM_TRY(check_handles(given));
     if (light.cascade_count > Light::max_cascades)
         return user_error(fmt::format("record: frame.lights[{}].cascade_count is {}: allowed is [0, {}]", given.place,
                                       light.cascade_count, Light::max_cascades));
-    if (auto ok = check_state(given, VK_FORMAT_D32_SFLOAT, "for every light"); !ok) return ok;
-    if (auto ok = check_region(given); !ok) return ok;
+    DARKROOM_TRY(check_state(given, VK_FORMAT_D32_SFLOAT, "for every light"));
+    DARKROOM_TRY(check_region(given));
     if (image.extent.width != image.extent.height)
         return refused(given, ".extent is {}x{}: allowed are squares", image.extent.width, image.extent.height);
     if (!is_same(image.used_region().extent, image.extent))
@@ -160,7 +160,7 @@ Result<> check_lights(const plan::Program& program, const Frame& frame, AllGiven
         const bool has_image = light.cascades.image != VK_NULL_HANDLE || light.cascades.view != VK_NULL_HANDLE;
         if (!has_image || light.cascade_count == 0) continue;
         const Given given{{Kind::Shadow, number}, i, &light.cascades};
-        if (auto ok = check_cascades(given, light); !ok) return ok;
+        DARKROOM_TRY(check_cascades(given, light));
         all.images[all.count++] = given;
         ++number;
     }
@@ -182,9 +182,9 @@ Result<> check_watched(const AllGiven& all, const CompileDesc& desc, const Frame
         const auto number = watch_with(desc, watched.id);
         if (!number || !watched.target.is_given()) continue;
         const Given given{{Kind::Watched, static_cast<std::uint32_t>(*number)}, i, &watched.target};
-        if (auto ok = check_handles(given); !ok) return ok;
-        if (auto ok = check_state(given, desc.watches[*number].target.format, "as compiled"); !ok) return ok;
-        if (auto ok = check_region(given); !ok) return ok;
+        DARKROOM_TRY(check_handles(given));
+        DARKROOM_TRY(check_state(given, desc.watches[*number].target.format, "as compiled"));
+        DARKROOM_TRY(check_region(given));
         if (watched.target.layer_count != 1)
             return refused(given, ".layer_count is {}: allowed is 1", watched.target.layer_count);
         const VkRect2D part = watched.region.extent.width == 0 ? VkRect2D{{}, color} : watched.region;
@@ -274,7 +274,7 @@ Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
             return user_error(
                 fmt::format("compile: watches[{}].id = {}: watches[{}] has it, too; allowed is an id of its own", i,
                             watch.id, *watch_with(desc, watch.id)));
-        if (auto ok = check_target(context, fmt::format("watches[{}].target", i), watch.target); !ok) return ok;
+        DARKROOM_TRY(check_target(context, fmt::format("watches[{}].target", i), watch.target));
     }
     return {};
 }
@@ -294,19 +294,19 @@ const ImageRef& host_image(const Frame& frame, HostImage which) {
 Result<> check_images(const gpu::Context& context, const CompileDesc& desc) {
     if (desc.color.format == VK_FORMAT_UNDEFINED)
         return user_error("compile: color.format = UNDEFINED: allowed is the format of every frame's color");
-    if (auto ok = check_input(context, "color", desc.color); !ok) return ok;
+    DARKROOM_TRY(check_input(context, "color", desc.color));
     for (const plan::FrameInput& input : plan::frame_inputs) {
         if (input.use == nullptr || !plan::is_given(desc, input)) continue;
         const ImageUse& use = desc.*input.use;
         if (input.can_hold != nullptr && !input.can_hold(use.format))
             return user_error(fmt::format("compile: {}.format = {}: allowed {}", input.name,
                                           gpu::format_name(use.format), input.allowed));
-        if (auto ok = check_input(context, input.name, use); !ok) return ok;
+        DARKROOM_TRY(check_input(context, input.name, use));
     }
     // Where a frame has no cascades a map of ones is read, and only graphics clears an image of depth.
     if (desc.has_shadows && !context.traits.has_graphics)
         return user_error("compile: has_shadows: allowed where the device's queue family has graphics");
-    if (auto ok = check_target(context, "target", desc.target); !ok) return ok;
+    DARKROOM_TRY(check_target(context, "target", desc.target));
     return check_watches(context, desc);
 }
 
@@ -338,16 +338,16 @@ bool fits(const plan::Program& program, const CompileDesc& desc, const Frame& fr
 Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
     AllGiven all;
     // The colour first: the extents of the others are compared with its own.
-    if (auto ok = check_picture({.image = &frame.color}, program, desc, frame); !ok) return ok;
+    DARKROOM_TRY(check_picture({.image = &frame.color}, program, desc, frame));
     for (const auto& which : program.imports) {
         if (!which || which->kind == Kind::Shadow || which->kind == Kind::Watched) continue;
         const Given given{.which = *which, .image = &host_image(frame, *which)};
-        if (auto ok = check_picture(given, program, desc, frame); !ok) return ok;
+        DARKROOM_TRY(check_picture(given, program, desc, frame));
         all.images[all.count++] = given;
     }
-    if (auto ok = check_lights(program, frame, all); !ok) return ok;
-    if (auto ok = check_overlaps(all, desc); !ok) return ok;
-    if (auto ok = check_watched(all, desc, frame); !ok) return ok;
+    DARKROOM_TRY(check_lights(program, frame, all));
+    DARKROOM_TRY(check_overlaps(all, desc));
+    DARKROOM_TRY(check_watched(all, desc, frame));
     if (desc.is_depth_planar && frame.camera.depth != DepthKind::Planar)
         return user_error("record: frame.camera.depth is not Planar: compiled with is_depth_planar, it must be");
     if (desc.is_velocity_plain && frame.camera.velocity != VelocityKind{})

@@ -9,11 +9,8 @@
 namespace darkroom::compose {
 
 Result<> PassKernels::build_complete(gpu::KernelStore& store) {
-    auto spec = plan::complete_spec(pass_);
-    if (!spec) return failure(std::move(spec));
-    auto kernel = store.get(*spec, pass_.stage);
-    if (!kernel) return failure(std::move(kernel));
-    complete_ = std::move(*kernel);
+    DARKROOM_TRY_VALUE(auto spec, plan::complete_spec(pass_));
+    DARKROOM_TRY_VALUE(complete_, store.get(spec, pass_.stage));
     return {};
 }
 

@@ -49,20 +49,18 @@ Result<std::shared_ptr<Tables::Batch>> Tables::make(gpu::Context& context,
         // Copies start at multiples of a texel's size; 16 is the largest.
         size += (plan::texels_of(*one).size() + 15) / 16 * 16;
     }
-    auto images = gpu::Image::create_together(context, infos, "tables of effects", out->memory);
-    if (!images) return failure(std::move(images));
-    for (std::size_t i = 0; i < images->size(); ++i) out->tables[i].image = std::move((*images)[i]);
+    DARKROOM_TRY_VALUE(auto images, gpu::Image::create_together(context, infos, "tables of effects", out->memory));
+    for (std::size_t i = 0; i < images.size(); ++i) out->tables[i].image = std::move(images[i]);
     if (size == 0) return out;
-    auto staging =
-        gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
-    if (!staging) return failure(std::move(staging));
-    out->staged = staging->handle;
+    DARKROOM_TRY_VALUE(auto staging, gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                         gpu::Memory::Kind::Upload, "tables"));
+    out->staged = staging.handle;
     for (std::size_t i = 0; i < fixed.size(); ++i) {
         const std::span<const std::byte> texels = plan::texels_of(*fixed[i]);
-        std::memcpy(staging->memory.mapped + out->tables[i].offset, texels.data(), texels.size());
+        std::memcpy(staging.memory.mapped + out->tables[i].offset, texels.data(), texels.size());
     }
     auto kept = std::make_unique<Staging>();
-    kept->buffer = std::move(*staging);
+    kept->buffer = std::move(staging);
     out->staging = std::move(kept);
     return out;
 }
@@ -73,9 +71,8 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::Fixed
     std::vector<const plan::FixedImage*> together;
     std::vector<std::size_t> places_of_together;
     const auto add = [&](std::span<const plan::FixedImage* const> fixed) -> Result<> {
-        auto made = make(context, fixed);
-        if (!made) return failure(std::move(made));
-        out.batches_.push_back(std::move(*made));
+        DARKROOM_TRY_VALUE(auto made, make(context, fixed));
+        out.batches_.push_back(std::move(made));
         return {};
     };
     const auto take_over = [&](std::size_t image) {
@@ -99,11 +96,11 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::Fixed
             continue;
         }
         const plan::FixedImage* const alone = &images[i];
-        if (auto ok = add({&alone, 1}); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(add({&alone, 1}));
         out.places_[i] = {out.batches_.size() - 1, 0};
     }
     if (together.empty()) return out;
-    if (auto ok = add(together); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(add(together));
     for (std::size_t i = 0; i < together.size(); ++i) out.places_[places_of_together[i]] = {out.batches_.size() - 1, i};
     return out;
 }
@@ -164,13 +161,13 @@ gpu::Binding Tables::binding(std::size_t index) const {
 
 Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {
     // Two layers, because one would make its view no array.
-    auto image = gpu::Image::create(context, {.name = "no shadow",
-                                              .format = VK_FORMAT_D32_SFLOAT,
-                                              .array_layers = 2,
-                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!image) return failure(std::move(image));
+    DARKROOM_TRY_VALUE(auto image, gpu::Image::create(context, {.name = "no shadow",
+                                                                .format = VK_FORMAT_D32_SFLOAT,
+                                                                .array_layers = 2,
+                                                                .usage = VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                         VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     LitShadowMap out;
-    out.image_ = std::move(*image);
+    out.image_ = std::move(image);
     out.reference = {.image = out.image_.handle,
                      .view = out.image_.view,
                      .format = VK_FORMAT_D32_SFLOAT,

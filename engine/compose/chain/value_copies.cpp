@@ -18,10 +18,9 @@ Result<ValueCopies> ValueCopies::create(gpu::Context& context, std::span<const p
     out.written_.resize(slots);
     out.kept_.resize(slots);
     out.numbers_.resize(out.first_.back() * slots);
-    auto buffer = gpu::Buffer::create(context, out.numbers_.size() * sizeof(float), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                      gpu::Memory::Kind::Readback, "values");
-    if (!buffer) return failure(std::move(buffer));
-    out.buffer_ = std::move(*buffer);
+    DARKROOM_TRY_VALUE(
+        out.buffer_, gpu::Buffer::create(context, out.numbers_.size() * sizeof(float), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         gpu::Memory::Kind::Readback, "values"));
     return out;
 }
 

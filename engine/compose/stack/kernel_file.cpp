@@ -71,18 +71,17 @@ class PlannedStack {
   public:
     static Result<PlannedStack> make(gpu::Context& context, std::span<const plan::Entry> stack,
                                      const CompileDesc& desc) {
-        auto program = plan::plan_program(stack, desc, compose::planner_traits(context, desc.kernels));
-        if (!program) return failure(std::move(program));
-        auto compiled = program->graph.compile(plan::largest_extents(desc), graph::measure_on(context));
-        if (!compiled) return failure(std::move(compiled));
-        return PlannedStack(std::move(*program), std::move(*compiled), desc);
+        DARKROOM_TRY_VALUE(auto program,
+                           plan::plan_program(stack, desc, compose::planner_traits(context, desc.kernels)));
+        DARKROOM_TRY_VALUE(auto compiled,
+                           program.graph.compile(plan::largest_extents(desc), graph::measure_on(context)));
+        return PlannedStack(std::move(program), std::move(compiled), desc);
     }
     Result<> add_complete(Wanted& wanted) const {
         for (std::uint32_t i = 0; i < program_.passes.size(); ++i) {
             if (compiled_.kept_pass_of({i}) == ~0u) continue;
-            auto spec = plan::complete_spec(program_.passes[i]);
-            if (!spec) return failure(std::move(spec));
-            wanted.add(*spec, program_.passes[i].stage);
+            DARKROOM_TRY_VALUE(auto spec, plan::complete_spec(program_.passes[i]));
+            wanted.add(spec, program_.passes[i].stage);
         }
         return {};
     }
@@ -101,9 +100,8 @@ class PlannedStack {
                 plan::expected_shape(program_, compiled_, schedule, frame, entries, pass, plan::largest_extents(desc_));
             if (std::ranges::find(seen_[i], shape) != seen_[i].end()) continue;
             seen_[i].push_back(shape);
-            auto spec = plan::lean_spec(pass, shape);
-            if (!spec) return failure(std::move(spec));
-            wanted.add(*spec, pass.stage);
+            DARKROOM_TRY_VALUE(auto spec, plan::lean_spec(pass, shape));
+            wanted.add(spec, pass.stage);
         }
         return {};
     }
@@ -126,19 +124,17 @@ bool is_planned_alike(std::span<const plan::Entry> a, std::span<const plan::Entr
 
 Result<> add_kernels(gpu::Context& context, std::span<const plan::Entry> stack, const CompileDesc& desc,
                      Wanted& wanted) {
-    auto base = PlannedStack::make(context, stack, desc);
-    if (!base) return failure(std::move(base));
-    if (auto ok = base->add_complete(wanted); !ok) return ok;
-    if (auto ok = base->add_lean(stack, true, wanted); !ok) return ok;
+    DARKROOM_TRY_VALUE(auto base, PlannedStack::make(context, stack, desc));
+    DARKROOM_TRY(base.add_complete(wanted));
+    DARKROOM_TRY(base.add_lean(stack, true, wanted));
     for (const std::vector<plan::Entry>& values : switched(stack)) {
         if (is_planned_alike(values, stack)) {
-            if (auto ok = base->add_lean(values, false, wanted); !ok) return ok;
+            DARKROOM_TRY(base.add_lean(values, false, wanted));
             continue;
         }
-        auto other = PlannedStack::make(context, values, desc);
-        if (!other) return failure(std::move(other));
-        if (auto ok = other->add_complete(wanted); !ok) return ok;
-        if (auto ok = other->add_lean(values, true, wanted); !ok) return ok;
+        DARKROOM_TRY_VALUE(auto other, PlannedStack::make(context, values, desc));
+        DARKROOM_TRY(other.add_complete(wanted));
+        DARKROOM_TRY(other.add_lean(values, true, wanted));
     }
     return {};
 }
@@ -166,10 +162,9 @@ Result<> KernelFile::add(const Composer& composer, const CompileDesc& desc) try 
     if (!shaders_->words.empty() && shaders_->profile != profile)
         return user_error(fmt::format("baking kernels: the composer's device is of profile {}, and the file of {}",
                                       gpu::profile_name(profile), gpu::profile_name(shaders_->profile)));
-    auto snapshot = state.snapshot(desc);
-    if (!snapshot) return failure(std::move(snapshot));
+    DARKROOM_TRY_VALUE(auto snapshot, state.snapshot(desc));
     Wanted wanted;
-    if (auto ok = add_kernels(*state.context, snapshot->values, desc, wanted); !ok) return ok;
+    DARKROOM_TRY(add_kernels(*state.context, snapshot.values, desc, wanted));
     shaders_->profile = profile;
     return bake(wanted, *shaders_);
 } catch (...) {

@@ -67,7 +67,7 @@ Result<> add_value(const plan::Entry& entry, const LayerValue& value, plan::Laye
     }
     const ParamInfo* const row = entry.info->parameters.find(value.parameter);
     if (row == nullptr) return user_error(fmt::format("{}: there is no such parameter", shown));
-    if (auto ok = check_words(*row, value.words, shown); !ok) return ok;
+    DARKROOM_TRY(check_words(*row, value.words, shown));
     out.values.push_back({row, value.words});
     return {};
 }
@@ -75,13 +75,11 @@ Result<> add_value(const plan::Entry& entry, const LayerValue& value, plan::Laye
 }  // namespace
 
 Result<> Composer::add_pulse(const PulseDesc& desc) try {
-    auto entry = state_->checked(desc.entry);
-    if (!entry) return failure(std::move(entry));
-    const auto row = State::row(**entry, desc.parameter);
-    if (!row) return failure(row.error());
-    if (auto ok = check_pulse(**entry, **row, desc); !ok) return ok;
-    (*entry)->pulses.push_back(
-        {.event = desc.event, .row = *row, .amount = desc.amount, .shape = desc.envelope, .duration = desc.duration});
+    DARKROOM_TRY_VALUE(auto entry, state_->checked(desc.entry));
+    DARKROOM_TRY_VALUE(const auto row, State::row(*entry, desc.parameter));
+    DARKROOM_TRY(check_pulse(*entry, *row, desc));
+    entry->pulses.push_back(
+        {.event = desc.event, .row = row, .amount = desc.amount, .shape = desc.envelope, .duration = desc.duration});
     return {};
 } catch (...) {
     return caught("add_pulse");
@@ -112,19 +110,17 @@ Result<> Composer::add_layer(const LayerDesc& desc) try {
     if (std::ranges::count(layer_names(), desc.name) > 0)
         return user_error(fmt::format("{}: there is one of this name", shown));
     if (desc.values.empty()) return user_error(fmt::format("{}: it has no values", shown));
-    if (auto ok = check_weight(shown, desc.weight); !ok) return ok;
-    if (desc.distance)
-        if (auto ok = check_distance(shown, *desc.distance); !ok) return ok;
+    DARKROOM_TRY(check_weight(shown, desc.weight));
+    if (desc.distance) DARKROOM_TRY(check_distance(shown, *desc.distance));
     // All of it, or nothing.
     std::vector<std::pair<plan::Entry*, plan::Layer>> made;
     for (const LayerValue& value : desc.values) {
-        auto entry = state_->checked(value.entry);
-        if (!entry) return failure(std::move(entry));
-        auto found = std::ranges::find(made, *entry, &std::pair<plan::Entry*, plan::Layer>::first);
+        DARKROOM_TRY_VALUE(auto entry, state_->checked(value.entry));
+        auto found = std::ranges::find(made, entry, &std::pair<plan::Entry*, plan::Layer>::first);
         if (found == made.end())
             found = made.insert(
-                found, {*entry, {.name = desc.name, .weight = desc.weight, .distance = desc.distance, .values = {}}});
-        if (auto ok = add_value(**entry, value, found->second); !ok) return ok;
+                found, {entry, {.name = desc.name, .weight = desc.weight, .distance = desc.distance, .values = {}}});
+        DARKROOM_TRY(add_value(*entry, value, found->second));
     }
     for (auto& [entry, layer] : made) {
         if (layer.opacity && !state_->is_mixable(*entry))

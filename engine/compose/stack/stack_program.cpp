@@ -24,7 +24,7 @@ auto wiring_of(const plan::Entry& entry) {
 Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& spec, KernelStage wanted) {
     if (wanted == KernelStage::Auto) {
         const gpu::Stage preferred = gpu::preferred_stage(context, spec);
-        if (auto ok = gpu::usable(context, spec, preferred); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(gpu::usable(context, spec, preferred));
         return preferred;
     }
     const gpu::Stage first = wanted == KernelStage::Compute ? gpu::Stage::Compute : gpu::Stage::Raster;
@@ -43,15 +43,13 @@ Result<> StackProgram::make_tables(gpu::Context& context, const StackProgram* ol
         return import && import->kind == plan::HostImage::Kind::Shadow;
     };
     if (std::ranges::any_of(program.imports, is_shadow_map)) {
-        auto made = LitShadowMap::create(context);
-        if (!made) return failure(std::move(made));
-        lit = std::move(*made);
+        DARKROOM_TRY_VALUE(lit, LitShadowMap::create(context));
     }
     const bool has_older = older != nullptr && older->tables.has_value();
-    auto made = has_older ? Tables::create(context, program.fixed_images, &*older->tables, older->program.fixed_images)
-                          : Tables::create(context, program.fixed_images);
-    if (!made) return failure(std::move(made));
-    tables.emplace(std::move(*made));
+    DARKROOM_TRY_VALUE(auto made, has_older ? Tables::create(context, program.fixed_images, &*older->tables,
+                                                             older->program.fixed_images)
+                                            : Tables::create(context, program.fixed_images));
+    tables.emplace(std::move(made));
     return {};
 }
 
@@ -82,10 +80,9 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
 
 Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, std::span<const plan::Entry> stack,
                                                  const CompileDesc& desc) {
-    auto program = plan::plan_program(stack, desc, planner_traits(context, desc.kernels));
-    if (!program) return failure(std::move(program));
+    DARKROOM_TRY_VALUE(auto program, plan::plan_program(stack, desc, planner_traits(context, desc.kernels)));
     auto out = std::make_shared<StackProgram>();
-    out->program = std::move(*program);
+    out->program = std::move(program);
     for (const plan::Entry& entry : stack) out->stack.push_back(entry);
     out->desc = desc;
     for (const plan::ProgramPass& pass : out->program.passes)

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <darkroom/effect.hpp>
 
+#include "core/try.hpp"
+
 namespace darkroom {
 
 namespace {
@@ -45,8 +47,7 @@ Result<> set_ui_constants(Composer& composer, const DarkroomUiConstants& given, 
                    {"scr_sbaralpha", number(given.ui_opacity)},
                    {"contrast", number(given.contrast)},
                    {"gamma", number(given.gamma)}};
-    for (const auto& [alias, value] : numbers)
-        if (auto ok = set_by_alias(composer, alias, {&value, 1}); !ok) return ok;
+    for (const auto& [alias, value] : numbers) DARKROOM_TRY(set_by_alias(composer, alias, {&value, 1}));
     return set_by_alias(composer, "r_ui_offset", offset);
 }
 

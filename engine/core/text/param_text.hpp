@@ -7,13 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <darkroom/param.hpp>
-#include <darkroom/result.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

@@ -138,7 +138,7 @@ Failure lacking(const AdoptDesc& desc, const Result<>& loaded) {
 }  // namespace
 
 Result<Device> Device::adopt(const AdoptDesc& desc) try {
-    if (Result<> checked = check_desc(desc); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_desc(desc));
     auto context = std::make_shared<Context>();
     context->log = desc.log;
     context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
@@ -171,7 +171,7 @@ Result<Device> Device::adopt(const AdoptDesc& desc) try {
     if (const Result<> loaded = context->vk.load_device(desc.device, has_debug_utils, names); !loaded)
         return lacking(desc, loaded);
     context->device = desc.device;
-    if (Result<> finished = context->finish(desc.kernels); !finished) return failure(std::move(finished));
+    DARKROOM_TRY(context->finish(desc.kernels));
     return Device(std::move(context));
 } catch (...) {
     return caught("adopting a device");

@@ -149,7 +149,7 @@ Result<> Context::allocate_memory(const DeviceMemoryRequest& request, std::strin
     // What `out` holds is given back by its owner, also where the text of an error finds no memory.
     const VkResult result = memory_hooks.allocate(memory_hooks.user, device, &request, &out);
     if (result != VK_SUCCESS) out = {};
-    if (auto ok = check(result, place); !ok) return ok;
+    DARKROOM_TRY(check(result, place));
     const bool is_aligned = out.offset % std::max<VkDeviceSize>(request.alignment, 1) == 0;
     if (is_aligned && (out.mapped != nullptr || !request.is_mapped)) return {};
     const std::string given =
@@ -212,14 +212,13 @@ Result<> Context::finish(std::span<const std::byte> baked) {
 
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
     if (!baked.empty()) {
-        Result<BakedShaders> read = BakedShaders::read(baked);
-        if (!read) return failure(std::move(read));
-        profile = read->profile();
+        DARKROOM_TRY_VALUE(BakedShaders read, BakedShaders::read(baked));
+        profile = read.profile();
         traits = planned_traits(traits, *profile);
-        shaders->set_baked(std::move(*read));
+        shaders->set_baked(std::move(read));
     }
     kernels = std::make_unique<KernelStore>(*this);
-    if (Result<> samplers = create_samplers(); !samplers) return samplers;
+    DARKROOM_TRY(create_samplers());
     // A pipeline out of a cache may have no statistics.
     return pipeline_cache == VK_NULL_HANDLE && !compiles_only ? create_pipeline_cache() : Result<>{};
 }
@@ -237,12 +236,12 @@ Result<> Context::create_samplers() {
     };
     const VkResult linear =
         cleared_on_failure(vk.CreateSampler(device, &create_info, allocator, &linear_sampler), linear_sampler);
-    if (Result<> checked = check(linear, "creating the linear sampler"); !checked) return checked;
+    DARKROOM_TRY(check(linear, "creating the linear sampler"));
     create_info.magFilter = VK_FILTER_NEAREST;
     create_info.minFilter = VK_FILTER_NEAREST;
     const VkResult nearest =
         cleared_on_failure(vk.CreateSampler(device, &create_info, allocator, &nearest_sampler), nearest_sampler);
-    if (Result<> checked = check(nearest, "creating the nearest sampler"); !checked) return checked;
+    DARKROOM_TRY(check(nearest, "creating the nearest sampler"));
     create_info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     create_info.addressModeV = create_info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     create_info.borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;

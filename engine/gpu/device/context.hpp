@@ -9,7 +9,6 @@
 #include <atomic>
 #include <cstdint>
 #include <darkroom/device.hpp>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -21,6 +20,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/try.hpp"
 #include "gpu/device/dispatch.hpp"
 
 namespace darkroom::gpu {

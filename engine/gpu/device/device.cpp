@@ -62,7 +62,7 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(Context& context) {
 Result<> check_layer(const Context& context, std::string_view name) {
     std::vector<VkLayerProperties> layers;
     const VkResult listed = gpu::enumerate(layers, context.vk.EnumerateInstanceLayerProperties);
-    if (Result<> checked = context.check(listed, "listing Vulkan's layers"); !checked) return checked;
+    DARKROOM_TRY(context.check(listed, "listing Vulkan's layers"));
     if (std::ranges::any_of(layers, [&](const VkLayerProperties& layer) { return name == layer.layerName; })) return {};
     return machine_error(
         fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
@@ -75,8 +75,7 @@ Result<std::vector<VkExtensionProperties>> instance_extensions(const Context& co
     const VkResult listed = gpu::enumerate(out, [&](std::uint32_t* count, VkExtensionProperties* to) {
         return context.vk.EnumerateInstanceExtensionProperties(layer, count, to);
     });
-    if (Result<> checked = context.check(listed, "listing the extensions of Vulkan's instances"); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(context.check(listed, "listing the extensions of Vulkan's instances"));
     return out;
 }
 
@@ -92,30 +91,24 @@ Result<> check_extensions(std::span<const char* const> wanted, const auto& has, 
 Result<> create_instance(Context& context, PFN_vkGetInstanceProcAddr loader, bool validate,
                          std::span<const char* const> wanted = {}) {
     Dispatch& vk = context.vk;
-    if (Result<> loaded = vk.load_loader(loader); !loaded) return loaded;
+    DARKROOM_TRY(vk.load_loader(loader));
     std::uint32_t loader_version = 0;
-    if (Result<> asked =
-            context.check(vk.EnumerateInstanceVersion(&loader_version), "asking the Vulkan loader's version");
-        !asked)
-        return asked;
+    DARKROOM_TRY(context.check(vk.EnumerateInstanceVersion(&loader_version), "asking the Vulkan loader's version"));
     if (loader_version < VK_API_VERSION_1_2) {
         return machine_error(fmt::format("the Vulkan loader is of version {}; 1.2 or later is needed",
                                          gpu::version_text(loader_version)),
                              ErrorCode::Unsupported);
     }
-    if (validate)
-        if (Result<> checked = check_layer(context, validation_layer); !checked) return checked;
-    const auto own = instance_extensions(context, nullptr);
-    if (!own) return failure(own.error());
-    const auto has = [&](std::string_view name) { return gpu::has_extension(*own, name); };
+    if (validate) DARKROOM_TRY(check_layer(context, validation_layer));
+    DARKROOM_TRY_VALUE(const auto own, instance_extensions(context, nullptr));
+    const auto has = [&](std::string_view name) { return gpu::has_extension(own, name); };
     context.traits.has_debug_labels = has(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     // The layer brings the extension with it where the loader has none of its own.
     if (validate && !context.traits.has_debug_labels) {
-        const auto brought = instance_extensions(context, validation_layer);
-        if (!brought) return failure(brought.error());
-        context.traits.has_debug_labels = gpu::has_extension(*brought, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+        DARKROOM_TRY_VALUE(const auto brought, instance_extensions(context, validation_layer));
+        context.traits.has_debug_labels = gpu::has_extension(brought, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    if (Result<> checked = check_extensions(wanted, has, "the Vulkan loader"); !checked) return checked;
+    DARKROOM_TRY(check_extensions(wanted, has, "the Vulkan loader"));
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (context.traits.has_debug_labels) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validate) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
@@ -151,9 +144,9 @@ Result<> create_instance(Context& context, PFN_vkGetInstanceProcAddr loader, boo
     const VkResult created = vk.CreateInstance(&create_info, context.allocator, &context.instance);
     // So say loaders that find none.
     if (created == VK_ERROR_INCOMPATIBLE_DRIVER) return gpu::no_device(fmt::format(" ({})", gpu::result_name(created)));
-    if (Result<> checked = context.check(created, "creating a Vulkan instance"); !checked) return checked;
+    DARKROOM_TRY(context.check(created, "creating a Vulkan instance"));
     context.is_owner = true;
-    if (Result<> loaded = vk.load_instance(context.instance, context.traits.has_debug_labels); !loaded) return loaded;
+    DARKROOM_TRY(vk.load_instance(context.instance, context.traits.has_debug_labels));
     if (!validate) return {};
     return context.check(gpu::cleared_on_failure(vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger,
                                                                                  context.allocator, &context.messenger),
@@ -183,8 +176,7 @@ Result<std::vector<Candidate>> find_devices(const Context& context, bool compile
     const VkResult result = gpu::enumerate(handles, [&](std::uint32_t* count, VkPhysicalDevice* to) {
         return context.vk.EnumeratePhysicalDevices(context.instance, count, to);
     });
-    if (Result<> checked = context.check(result, "listing the Vulkan devices"); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(context.check(result, "listing the Vulkan devices"));
     std::vector<Candidate> candidates;
     for (std::uint32_t index = 0; index < handles.size(); ++index) {
         Candidate candidate{.device = handles[index], .info = gpu::identify(context.vk, handles[index], index)};
@@ -204,9 +196,8 @@ std::vector<DeviceInfo> infos_of(std::span<const Candidate> candidates) {
 }
 
 Result<Candidate> choose(std::span<const Candidate> candidates, const std::string& select) {
-    const Result<std::size_t> place = gpu::select_device(infos_of(candidates), select);
-    if (!place) return failure(place.error());
-    const Candidate& chosen = candidates[*place];
+    DARKROOM_TRY_VALUE(const std::size_t place, gpu::select_device(infos_of(candidates), select));
+    const Candidate& chosen = candidates[place];
     if (!chosen.info.is_usable) {
         return machine_error(
             fmt::format("device {} \"{}\": {}", chosen.info.index, chosen.info.name, chosen.info.reason),
@@ -218,13 +209,10 @@ Result<Candidate> choose(std::span<const Candidate> candidates, const std::strin
 Result<> create_device(Context& context, std::span<const char* const> wanted) {
     const Dispatch& vk = context.vk;
     std::vector<VkExtensionProperties> there;
-    if (Result<> listed = context.check(gpu::device_extensions(vk, context.physical_device, there),
-                                        fmt::format("listing the extensions of \"{}\"", context.info.name));
-        !listed)
-        return listed;
+    DARKROOM_TRY(context.check(gpu::device_extensions(vk, context.physical_device, there),
+                               fmt::format("listing the extensions of \"{}\"", context.info.name)));
     const auto has = [&](std::string_view name) { return gpu::has_extension(there, name); };
-    if (Result<> checked = check_extensions(wanted, has, fmt::format("device \"{}\"", context.info.name)); !checked)
-        return checked;
+    DARKROOM_TRY(check_extensions(wanted, has, fmt::format("device \"{}\"", context.info.name)));
     VkPhysicalDeviceFeatures2 queried{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(context.physical_device, &queried);
     const VkPhysicalDeviceFeatures& available = queried.features;
@@ -301,10 +289,7 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
     };
     VkDevice device = VK_NULL_HANDLE;
     const VkResult created = vk.CreateDevice(context.physical_device, &create_info, context.allocator, &device);
-    if (Result<> checked = context.check(created, fmt::format("creating a device on \"{}\"", context.info.name));
-        !checked) {
-        return checked;
-    }
+    DARKROOM_TRY(context.check(created, fmt::format("creating a device on \"{}\"", context.info.name)));
     Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels, names);
     if (loaded && context.compiles_only) loaded = context.vk.load_statistics(device);
     if (!loaded) {
@@ -327,13 +312,11 @@ const DeviceInfo& Device::info() const { return context_->info; }
 std::uint64_t Device::validation_messages() const { return context_->validation_messages; }
 
 Result<std::vector<DeviceInfo>> Device::list() try {
-    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
-    if (!loader) return failure(loader.error());
+    DARKROOM_TRY_VALUE(const PFN_vkGetInstanceProcAddr loader, gpu::open_vulkan_loader());
     Context context;
-    if (Result<> created = create_instance(context, *loader, false); !created) return failure(std::move(created));
-    const Result<std::vector<Candidate>> candidates = find_devices(context);
-    if (!candidates) return failure(candidates.error());
-    return infos_of(*candidates);
+    DARKROOM_TRY(create_instance(context, loader, false));
+    DARKROOM_TRY_VALUE(const std::vector<Candidate> candidates, find_devices(context));
+    return infos_of(candidates);
 } catch (...) {
     return caught("listing devices");
 }
@@ -345,28 +328,21 @@ Result<std::shared_ptr<Context>> gpu::create_context(PFN_vkGetInstanceProcAddr l
     context->log = desc.log;
     context->compiles_only = desc.compiles_only;
     context->cache_folder = cache_folder_of(desc.cache_folder, desc.caches_on_disk);
-    if (Result<> created = create_instance(*context, loader, wants_validation(desc), desc.instance_extensions);
-        !created)
-        return failure(std::move(created));
-    const Result<std::vector<Candidate>> candidates = find_devices(*context, desc.compiles_only);
-    if (!candidates) return failure(candidates.error());
-    Result<Candidate> chosen = choose(*candidates, desc.select);
-    if (!chosen) return failure(std::move(chosen));
-    context->physical_device = chosen->device;
-    context->info = std::move(chosen->info);
+    DARKROOM_TRY(create_instance(*context, loader, wants_validation(desc), desc.instance_extensions));
+    DARKROOM_TRY_VALUE(const std::vector<Candidate> candidates, find_devices(*context, desc.compiles_only));
+    DARKROOM_TRY_VALUE(Candidate chosen, choose(candidates, desc.select));
+    context->physical_device = chosen.device;
+    context->info = std::move(chosen.info);
     context->queue_family = find_queue_family(context->vk, context->physical_device).value_or(0);
-    if (Result<> created = create_device(*context, desc.device_extensions); !created)
-        return failure(std::move(created));
-    if (Result<> finished = context->finish(desc.kernels); !finished) return failure(std::move(finished));
+    DARKROOM_TRY(create_device(*context, desc.device_extensions));
+    DARKROOM_TRY(context->finish(desc.kernels));
     return context;
 }
 
 Result<Device> Device::create(const DeviceDesc& desc) try {
-    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
-    if (!loader) return failure(loader.error());
-    Result<std::shared_ptr<Context>> context = gpu::create_context(*loader, desc);
-    if (!context) return failure(std::move(context));
-    return Device(std::move(*context));
+    DARKROOM_TRY_VALUE(const PFN_vkGetInstanceProcAddr loader, gpu::open_vulkan_loader());
+    DARKROOM_TRY_VALUE(std::shared_ptr<Context> context, gpu::create_context(loader, desc));
+    return Device(std::move(context));
 } catch (...) {
     return caught("creating a device");
 }

@@ -84,8 +84,7 @@ Result<> Kernel::State::create_layouts() {
     };
     const VkResult set_result = cleared_on_failure(
         context.vk.CreateDescriptorSetLayout(context.device, &set_info, context.allocator, &set_layout), set_layout);
-    Result<> checked = context.check(set_result, fmt::format("creating the set layout of \"{}\"", spec.name));
-    if (!checked) return checked;
+    DARKROOM_TRY(context.check(set_result, fmt::format("creating the set layout of \"{}\"", spec.name)));
     const VkPipelineLayoutCreateInfo layout_info{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, .setLayoutCount = 1, .pSetLayouts = &set_layout};
     return context.check(cleared_on_failure(context.vk.CreatePipelineLayout(context.device, &layout_info,
@@ -200,17 +199,15 @@ Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpe
                                                const KernelText& text) {
     DARKROOM_ASSERT((spec.compute || !spec.outputs.empty()) && spec.buffers.size() <= max_buffers);
     DARKROOM_ASSERT(spec.outputs.size() <= max_outputs && spec.images.size() <= max_images);
-    if (Result<> checked = usable(context, spec, stage); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(usable(context, spec, stage));
     std::unique_ptr<Kernel> kernel(new Kernel);
     kernel->state_ = std::make_unique<State>(context);
     State& state = *kernel->state_;
     state.spec = spec;
     state.spec.body.clear();
     state.stage = stage;
-    if (Result<> created = state.create_layouts(); !created) return failure(std::move(created));
-    Result<VkPipeline> pipeline = create_kernel_pipeline(context, spec, stage, text, state.pipeline_layout);
-    if (!pipeline) return failure(std::move(pipeline));
-    state.pipeline = *pipeline;
+    DARKROOM_TRY(state.create_layouts());
+    DARKROOM_TRY_VALUE(state.pipeline, create_kernel_pipeline(context, spec, stage, text, state.pipeline_layout));
     return kernel;
 }
 
@@ -219,10 +216,9 @@ Stage Kernel::stage() const { return state_->stage; }
 VkDescriptorSetLayout Kernel::set_layout() const { return state_->set_layout; }
 
 Result<KernelStatistics> Kernel::statistics() const {
-    auto out = pipeline_statistics(state_->context, state_->pipeline, stage_flag(state_->stage));
-    if (!out) return out;
-    out->name = state_->spec.name;
-    if (state_->stage == Stage::Compute) out->workgroup = state_->spec.workgroup;
+    DARKROOM_TRY_VALUE(auto out, pipeline_statistics(state_->context, state_->pipeline, stage_flag(state_->stage)));
+    out.name = state_->spec.name;
+    if (state_->stage == Stage::Compute) out.workgroup = state_->spec.workgroup;
     return out;
 }
 

@@ -38,7 +38,6 @@
 #include <array>
 #include <cstdint>
 #include <darkroom/kernel_statistics.hpp>
-#include <darkroom/result.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -46,6 +45,7 @@
 #include <vector>
 
 #include "core/digest/sha256.hpp"
+#include "core/try.hpp"
 #include "gpu/kernel/block.hpp"
 
 namespace darkroom::gpu {

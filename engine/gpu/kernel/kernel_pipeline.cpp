@@ -33,8 +33,7 @@ class ShaderModule {
         const VkResult result = cleared_on_failure(
             context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_),
             module.handle_);
-        Result<> checked = context.check(result, fmt::format("creating the shader module of \"{}\"", name));
-        if (!checked) return failure(std::move(checked));
+        DARKROOM_TRY(context.check(result, fmt::format("creating the shader module of \"{}\"", name)));
         return module;
     }
     ShaderModule(ShaderModule&& other) noexcept : context_(other.context_), handle_(other.handle_) {
@@ -85,18 +84,15 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info,
                                                               context.allocator, &pipeline);
-    Result<> checked = context.check(result, what);
-    if (!checked) return failure(std::move(checked));
+    DARKROOM_TRY(context.check(result, what));
     return pipeline;
 }
 
 Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
                                           const ShaderModule& fragment) {
-    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context);
-    if (!words) return failure(words.error());
-    const Result<ShaderModule> vertex = ShaderModule::create(context, *words, "full-screen triangle");
-    if (!vertex) return failure(vertex.error());
-    const std::array stages{vertex->stage(VK_SHADER_STAGE_VERTEX_BIT), fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
+    DARKROOM_TRY_VALUE(const std::vector<std::uint32_t> words, full_screen_vertex(context));
+    DARKROOM_TRY_VALUE(const ShaderModule vertex, ShaderModule::create(context, words, "full-screen triangle"));
+    const std::array stages{vertex.stage(VK_SHADER_STAGE_VERTEX_BIT), fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
     const VkPipelineVertexInputStateCreateInfo vertex_input{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     const VkPipelineInputAssemblyStateCreateInfo input_assembly{
@@ -164,8 +160,7 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info,
                                                                context.allocator, &pipeline);
-    Result<> checked = context.check(result, what);
-    if (!checked) return failure(std::move(checked));
+    DARKROOM_TRY(context.check(result, what));
     return pipeline;
 }
 
@@ -186,15 +181,13 @@ ShaderSource vertex_shader() {
 Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& spec, Stage stage, const KernelText& text,
                                           VkPipelineLayout layout) {
     const bool is_compute = stage == Stage::Compute;
-    const Result<std::vector<std::uint32_t>> words = context.shaders->compile(kernel_shader(spec.name, stage, text));
-    if (!words) return failure(words.error());
-    const Result<ShaderModule> module = ShaderModule::create(context, *words, spec.name);
-    if (!module) return failure(module.error());
-    Result<VkPipeline> made = is_compute ? create_compute_pipeline(context, spec, layout, *module)
-                                         : create_raster_pipeline(context, spec, layout, *module);
-    if (!made) return made;
+    DARKROOM_TRY_VALUE(const std::vector<std::uint32_t> words,
+                       context.shaders->compile(kernel_shader(spec.name, stage, text)));
+    DARKROOM_TRY_VALUE(const ShaderModule module, ShaderModule::create(context, words, spec.name));
+    DARKROOM_TRY_VALUE(VkPipeline made, is_compute ? create_compute_pipeline(context, spec, layout, module)
+                                                   : create_raster_pipeline(context, spec, layout, module));
     ++context.pipelines_created;
-    name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(*made), spec.name);
+    name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(made), spec.name);
     return made;
 }
 

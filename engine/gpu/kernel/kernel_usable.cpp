@@ -100,15 +100,14 @@ Result<> usable(const Context& context, const KernelSpec& spec, Stage stage) {
         return user_error(
             fmt::format("kernel \"{}\": {} outputs, but an additive kernel has 1", spec.name, spec.outputs.size()));
     }
-    if (auto checked = can_run(context, spec, stage); !checked) return checked;
+    DARKROOM_TRY(can_run(context, spec, stage));
     for (const KernelImage& image : spec.images) {
         if (image.storage_format == VK_FORMAT_UNDEFINED) continue;
-        if (Result<> checked = can_load(context, spec, stage, image); !checked) return checked;
+        DARKROOM_TRY(can_load(context, spec, stage, image));
     }
     for (std::size_t index = 0; index < spec.outputs.size(); ++index) {
         const bool is_compute = stage == Stage::Compute;
-        Result<> checked = is_compute ? can_store(context, spec, index) : can_render(context, spec, index);
-        if (!checked) return checked;
+        DARKROOM_TRY(is_compute ? can_store(context, spec, index) : can_render(context, spec, index));
     }
     return {};
 }

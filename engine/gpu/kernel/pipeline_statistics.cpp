@@ -16,10 +16,9 @@ constexpr std::string_view what = "reading what the driver says of a pipeline";
 template <class Item>
 Result<std::vector<Item>> list(const Context& context, const Item& empty, const auto& call) {
     std::uint32_t count = 0;
-    if (Result<> checked = context.check(call(&count, nullptr), what); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(context.check(call(&count, nullptr), what));
     std::vector<Item> items(count, empty);
-    if (Result<> checked = context.check(call(&count, items.data()), what); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(context.check(call(&count, items.data()), what));
     items.resize(count);
     return items;
 }
@@ -43,17 +42,17 @@ Result<std::string> machine_code(const Context& context, const VkPipelineExecuta
     const auto call = [&](std::uint32_t* count, Representation* out) {
         return context.vk.GetPipelineExecutableInternalRepresentationsKHR(context.device, &program, count, out);
     };
-    auto texts =
-        list(context, Representation{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR}, call);
-    if (!texts) return failure(std::move(texts));
-    if (texts->empty() || texts->back().isText == VK_FALSE) return std::string();
+    DARKROOM_TRY_VALUE(
+        auto texts,
+        list(context, Representation{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR},
+             call));
+    if (texts.empty() || texts.back().isText == VK_FALSE) return std::string();
     // Without a place for the others they tell their sizes alone.
-    std::string out(texts->back().dataSize, '\0');
-    for (Representation& text : *texts) text.pData = nullptr;
-    texts->back().pData = out.data();
-    auto count = static_cast<std::uint32_t>(texts->size());
-    if (Result<> checked = context.check(call(&count, texts->data()), what); !checked)
-        return failure(std::move(checked));
+    std::string out(texts.back().dataSize, '\0');
+    for (Representation& text : texts) text.pData = nullptr;
+    texts.back().pData = out.data();
+    auto count = static_cast<std::uint32_t>(texts.size());
+    DARKROOM_TRY(context.check(call(&count, texts.data()), what));
     out.resize(out.find_last_not_of('\0') + 1);
     return out;
 }
@@ -63,28 +62,25 @@ Result<std::string> machine_code(const Context& context, const VkPipelineExecuta
 Result<KernelStatistics> pipeline_statistics(const Context& context, VkPipeline pipeline, VkShaderStageFlagBits stage) {
     using Program = VkPipelineExecutablePropertiesKHR;
     const VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
-    const auto programs =
-        list(context, Program{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR},
-             [&](std::uint32_t* count, Program* out) {
-                 return context.vk.GetPipelineExecutablePropertiesKHR(context.device, &info, count, out);
-             });
-    if (!programs) return failure(programs.error());
-    for (std::uint32_t index = 0; index < programs->size(); ++index) {
-        if (((*programs)[index].stages & stage) == 0) continue;
+    DARKROOM_TRY_VALUE(const auto programs,
+                       list(context, Program{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR},
+                            [&](std::uint32_t* count, Program* out) {
+                                return context.vk.GetPipelineExecutablePropertiesKHR(context.device, &info, count, out);
+                            }));
+    for (std::uint32_t index = 0; index < programs.size(); ++index) {
+        if ((programs[index].stages & stage) == 0) continue;
         const VkPipelineExecutableInfoKHR program{
             .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline, .executableIndex = index};
         using Statistic = VkPipelineExecutableStatisticKHR;
-        const auto statistics =
-            list(context, Statistic{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR},
-                 [&](std::uint32_t* count, Statistic* out) {
-                     return context.vk.GetPipelineExecutableStatisticsKHR(context.device, &program, count, out);
-                 });
-        if (!statistics) return failure(statistics.error());
-        KernelStatistics out{.subgroup = (*programs)[index].subgroupSize};
-        for (const Statistic& one : *statistics) out.values.push_back({one.name, number_of(one)});
-        auto code = machine_code(context, program);
-        if (!code) return failure(std::move(code));
-        out.machine_code = std::move(*code);
+        DARKROOM_TRY_VALUE(const auto statistics,
+                           list(context, Statistic{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR},
+                                [&](std::uint32_t* count, Statistic* out) {
+                                    return context.vk.GetPipelineExecutableStatisticsKHR(context.device, &program,
+                                                                                         count, out);
+                                }));
+        KernelStatistics out{.subgroup = programs[index].subgroupSize};
+        for (const Statistic& one : statistics) out.values.push_back({one.name, number_of(one)});
+        DARKROOM_TRY_VALUE(out.machine_code, machine_code(context, program));
         return out;
     }
     return machine_error("the driver tells nothing about a pipeline's program");

@@ -5,7 +5,8 @@
 #include <vulkan/vulkan.h>
 
 #include <darkroom/kernel_statistics.hpp>
-#include <darkroom/result.hpp>
+
+#include "core/try.hpp"
 
 namespace darkroom::gpu {
 

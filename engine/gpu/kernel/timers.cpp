@@ -25,11 +25,10 @@ Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32
         .queryType = VK_QUERY_TYPE_TIMESTAMP,
         .queryCount = slots * marks,
     };
-    Result<> checked = context.check(
+    DARKROOM_TRY(context.check(
         cleared_on_failure(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
                            timers.pool),
-        "creating the timestamp queries");
-    if (!checked) return failure(std::move(checked));
+        "creating the timestamp queries"));
     timers.is_reset = context.traits.has_host_query_reset;
     if (timers.is_reset) context.vk.ResetQueryPool(context.device, timers.pool, 0, slots * marks);
     return timers;

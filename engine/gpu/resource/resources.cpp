@@ -43,8 +43,7 @@ Result<VkImage> create_image(Context& context, const ImageInfo& info) {
         fmt::format("creating the image \"{}\", {} x {}", info.name, info.extent.width, info.extent.height);
     VkImage image = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImage(context.device, &create_info, context.allocator, &image);
-    Result<> checked = context.check(result, what);
-    if (!checked) return failure(std::move(checked));
+    DARKROOM_TRY(context.check(result, what));
     name_object(context, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), info.name);
     return image;
 }
@@ -108,8 +107,7 @@ Result<VkImageView> create_view(Context& context, const Image& image, VkImageVie
     const std::string what = fmt::format("creating a view of the image \"{}\"", image.info.name);
     VkImageView view = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImageView(context.device, &create_info, context.allocator, &view);
-    Result<> checked = context.check(result, what);
-    if (!checked) return failure(std::move(checked));
+    DARKROOM_TRY(context.check(result, what));
     return view;
 }
 
@@ -120,18 +118,16 @@ Result<> create_views(Context& context, Image& image) {
     const std::uint32_t mips = image.info.mip_levels, layers = image.info.array_layers;
     image.mip_views.reserve(mips);
     image.layer_views.reserve(layers > 1 ? layers : 0);
-    Result<VkImageView> whole = create_view(context, image, type, {.mip_count = mips, .layer_count = layers});
-    if (!whole) return failure(std::move(whole));
-    image.view = *whole;
+    DARKROOM_TRY_VALUE(image.view, create_view(context, image, type, {.mip_count = mips, .layer_count = layers}));
     for (std::uint32_t mip = 0; mip < mips; ++mip) {
-        Result<VkImageView> view = create_view(context, image, type, {.first_mip = mip, .layer_count = layers});
-        if (!view) return failure(std::move(view));
-        image.mip_views.push_back(*view);
+        DARKROOM_TRY_VALUE(VkImageView view,
+                           create_view(context, image, type, {.first_mip = mip, .layer_count = layers}));
+        image.mip_views.push_back(view);
     }
     for (std::uint32_t layer = 0; layers > 1 && layer < layers; ++layer) {
-        Result<VkImageView> view = create_view(context, image, VK_IMAGE_VIEW_TYPE_2D, {.first_layer = layer});
-        if (!view) return failure(std::move(view));
-        image.layer_views.push_back(*view);
+        DARKROOM_TRY_VALUE(VkImageView view,
+                           create_view(context, image, VK_IMAGE_VIEW_TYPE_2D, {.first_layer = layer}));
+        image.layer_views.push_back(view);
     }
     return {};
 }
@@ -178,27 +174,23 @@ Memory::~Memory() {
 }
 
 Result<Image> Image::create(Context& context, const ImageInfo& info) {
-    Result<VkImage> handle = create_image(context, info);
-    if (!handle) return failure(std::move(handle));
+    DARKROOM_TRY_VALUE(VkImage handle, create_image(context, info));
     Image image;
     image.context = &context;
-    image.handle = *handle;
+    image.handle = handle;
     image.info = info;
     const Needed needed = needed_by(context, image.handle);
-    Result<Memory> memory = Memory::create(context, needed.request, needed.type_bits, Memory::Kind::Device,
-                                           fmt::format("the image \"{}\"", info.name));
-    if (!memory) return failure(std::move(memory));
-    image.memory = std::move(*memory);
+    DARKROOM_TRY_VALUE(image.memory, Memory::create(context, needed.request, needed.type_bits, Memory::Kind::Device,
+                                                    fmt::format("the image \"{}\"", info.name)));
     const DeviceMemory piece = image.memory.piece;
     return bind_image(context, std::move(image), piece, 0);
 }
 
 Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory& memory, VkDeviceSize offset) {
-    Result<VkImage> handle = create_image(context, info);
-    if (!handle) return failure(std::move(handle));
+    DARKROOM_TRY_VALUE(VkImage handle, create_image(context, info));
     Image image;
     image.context = &context;
-    image.handle = *handle;
+    image.handle = handle;
     image.info = info;
     return bind_image(context, std::move(image), memory.piece, offset);
 }
@@ -211,11 +203,10 @@ Result<std::vector<Image>> Image::create_together(Context& context, std::span<co
     std::uint32_t type_bits = ~0u;
     out.reserve(infos.size());
     for (const ImageInfo& info : infos) {
-        Result<VkImage> handle = create_image(context, info);
-        if (!handle) return failure(std::move(handle));
+        DARKROOM_TRY_VALUE(VkImage handle, create_image(context, info));
         Image& image = out.emplace_back();
         image.context = &context;
-        image.handle = *handle;
+        image.handle = handle;
         image.info = info;
         const Needed needed = needed_by(context, image.handle);
         const VkDeviceSize alignment = std::max<VkDeviceSize>(needed.request.alignment, 1);
@@ -225,23 +216,19 @@ Result<std::vector<Image>> Image::create_together(Context& context, std::span<co
         type_bits &= needed.type_bits;
     }
     if (out.empty()) return out;
-    Result<Memory> made = Memory::create(context, all, type_bits, Memory::Kind::Device, what);
-    if (!made) return failure(std::move(made));
-    memory = std::move(*made);
+    DARKROOM_TRY_VALUE(memory, Memory::create(context, all, type_bits, Memory::Kind::Device, what));
     for (std::size_t i = 0; i < out.size(); ++i) {
-        Result<Image> bound = bind_image(context, std::move(out[i]), memory.piece, offsets[i]);
-        if (!bound) return failure(std::move(bound));
-        out[i] = std::move(*bound);
+        DARKROOM_TRY_VALUE(Image bound, bind_image(context, std::move(out[i]), memory.piece, offsets[i]));
+        out[i] = std::move(bound);
     }
     return out;
 }
 
 Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& info) {
     if (context.is_assumed || context.compiles_only) return assumed_requirements(info);
-    const Result<VkImage> handle = create_image(context, info);
-    if (!handle) return failure(handle.error());
-    const Needed needed = needed_by(context, *handle);
-    context.vk.DestroyImage(context.device, *handle, context.allocator);
+    DARKROOM_TRY_VALUE(const VkImage handle, create_image(context, info));
+    const Needed needed = needed_by(context, handle);
+    context.vk.DestroyImage(context.device, handle, context.allocator);
     return VkMemoryRequirements{needed.request.size, needed.request.alignment, needed.type_bits};
 }
 
@@ -283,10 +270,8 @@ Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsage
     if (!checked) return failure(std::move(checked));
     name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
     const Needed needed = needed_by(context, buffer.handle);
-    Result<Memory> memory =
-        Memory::create(context, needed.request, needed.type_bits, kind, fmt::format("the buffer \"{}\"", name));
-    if (!memory) return failure(std::move(memory));
-    buffer.memory = std::move(*memory);
+    DARKROOM_TRY_VALUE(buffer.memory, Memory::create(context, needed.request, needed.type_bits, kind,
+                                                     fmt::format("the buffer \"{}\"", name)));
     const VkResult bound = context.vk.BindBufferMemory(context.device, buffer.handle, buffer.memory.piece.memory,
                                                        buffer.memory.piece.offset);
     checked = context.check(bound, fmt::format("binding memory to the buffer \"{}\"", name));

@@ -8,13 +8,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/try.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/resource/memory_types.hpp"
 

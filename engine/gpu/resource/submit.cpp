@@ -100,7 +100,7 @@ Result<Submission> Submission::begin(Context& context, std::string_view what,
             fmt::format("{}: an adopted device is the host's, and the library does not submit to its queue", what));
     }
     auto state = std::make_unique<State>(context, what);
-    if (Result<> done = context.check(state->run(body), what); !done) return failure(std::move(done));
+    DARKROOM_TRY(context.check(state->run(body), what));
     return Submission(std::move(state));
 }
 

@@ -116,7 +116,7 @@ Result<BakedShaders> BakedShaders::read(std::span<const std::byte> file) {
     if (file.size() < sizeof(Head) || read_at<Head>(file, 0).magic != file_magic)
         return user_error("baked kernels: the bytes are not a file that 'darkroom bake' wrote");
     const auto head = read_at<Head>(file, 0);
-    if (Result<> checked = check_head(head, file); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_head(head, file));
     std::size_t place = sizeof(Head) + head.count * sizeof(IndexEntry);
     for (std::size_t i = 0; i < head.count; ++i)
         if (Result<> checked = check_kernel(file, i, place); !checked)

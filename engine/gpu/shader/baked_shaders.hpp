@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <darkroom/device.hpp>
-#include <darkroom/result.hpp>
 #include <map>
 #include <optional>
 #include <span>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/digest/sha256.hpp"
+#include "core/try.hpp"
 #include "gpu/shader/shader_stage.hpp"
 
 namespace darkroom::gpu {

@@ -55,11 +55,10 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
             history->older = there;
             made.emplace_back(std::pair(slot.history_key, view), history);
             if (slot.desc.is_buffer()) {
-                auto buffer =
+                DARKROOM_TRY_VALUE(
+                    history->buffer,
                     gpu::Buffer::create(context, slot.desc.buffer_bytes, buffer_usage, gpu::Memory::Kind::Device,
-                                        fmt::format("{} of view {}", slot.desc.name, view));
-                if (!buffer) return failure(std::move(buffer));
-                history->buffer = std::move(*buffer);
+                                        fmt::format("{} of view {}", slot.desc.name, view)));
                 continue;
             }
             history->resampling = resampling_of(context, slot.desc.format);
@@ -75,9 +74,8 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
         }
     }
     const auto memory = std::make_shared<gpu::Memory>();
-    auto images = gpu::Image::create_together(context, infos, "histories", *memory);
-    if (!images) return failure(std::move(images));
-    auto next = images->begin();
+    DARKROOM_TRY_VALUE(auto images, gpu::Image::create_together(context, infos, "histories", *memory));
+    auto next = images.begin();
     for (const auto& [key, history] : made) {
         if (history->buffer.handle == VK_NULL_HANDLE) {
             history->memory = memory;

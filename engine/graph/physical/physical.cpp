@@ -65,9 +65,8 @@ Measure measure_on(gpu::Context& context) {
         if (width > most || height > most)
             return user_error(fmt::format("image '{}' would be {}x{}: this device allows at most {}x{}", desc.name,
                                           width, height, most, most));
-        auto measured = gpu::Image::measure(context, info_of(desc, usage, desc.size.of(frame)));
-        if (!measured) return failure(std::move(measured));
-        return Requirements{measured->size, measured->alignment, measured->memoryTypeBits};
+        DARKROOM_TRY_VALUE(auto measured, gpu::Image::measure(context, info_of(desc, usage, desc.size.of(frame))));
+        return Requirements{measured.size, measured.alignment, measured.memoryTypeBits};
     };
 }
 
@@ -99,21 +98,18 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
     for (std::uint32_t index = 0; index < std::max(views, 1u); ++index) physical.views_.push_back(pool.view(index));
     physical.last_recordings_.assign(physical.views_.size(), HistoryImages::never);
     if (compiled.transient_bytes() > 0) {
-        auto memory =
+        DARKROOM_TRY_VALUE(
+            physical.memory_,
             gpu::Memory::create(context, {.size = compiled.transient_bytes(), .alignment = compiled.memory_alignment()},
-                                compiled.memory_type_bits(), gpu::Memory::Kind::Device, "transient images");
-        if (!memory) return failure(std::move(memory));
-        physical.memory_ = std::move(*memory);
+                                compiled.memory_type_bits(), gpu::Memory::Kind::Device, "transient images"));
     }
     if (compiled.buffer_bytes() > 0) {
-        auto buffers = gpu::Buffer::create(context, compiled.buffer_bytes(), buffer_usage, gpu::Memory::Kind::Device,
-                                           "transient buffers");
-        if (!buffers) return failure(std::move(buffers));
-        physical.buffers_ = std::move(*buffers);
+        DARKROOM_TRY_VALUE(physical.buffers_, gpu::Buffer::create(context, compiled.buffer_bytes(), buffer_usage,
+                                                                  gpu::Memory::Kind::Device, "transient buffers"));
     }
-    auto histories = pool.acquire(context, compiled.slots(), static_cast<std::uint32_t>(physical.views_.size()));
-    if (!histories) return failure(std::move(histories));
-    for (auto& of_views : *histories) physical.histories_.push_back({.views = std::move(of_views)});
+    DARKROOM_TRY_VALUE(auto histories,
+                       pool.acquire(context, compiled.slots(), static_cast<std::uint32_t>(physical.views_.size())));
+    for (auto& of_views : histories) physical.histories_.push_back({.views = std::move(of_views)});
     for (const Slot& slot : compiled.slots()) {
         Entry entry{.kind = slot.kind,
                     .format = slot.desc.format,
@@ -132,10 +128,9 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
             if (slot.kind == Slot::Kind::Lasting) physical.adopt_history(slot, index);
         } else if (slot.kind == Slot::Kind::Transient) {
             const gpu::ImageInfo info = info_of(slot.desc, slot.usage, slot.extent);
-            auto image = gpu::Image::place(context, info, physical.memory_, slot.offset);
-            if (!image) return failure(std::move(image));
-            adopt(kept, *image);
-            physical.images_.push_back(std::move(*image));
+            DARKROOM_TRY_VALUE(auto image, gpu::Image::place(context, info, physical.memory_, slot.offset));
+            adopt(kept, image);
+            physical.images_.push_back(std::move(image));
         } else if (slot.kind == Slot::Kind::History) {
             physical.adopt_history(slot, index);
         } else {

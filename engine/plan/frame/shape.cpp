@@ -39,10 +39,11 @@ Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedSt
     const Finish finish = fused == nullptr                   ? Finish::None
                           : word && pass.finishes_by_frame() ? static_cast<Finish>(*word & 3)
                                                              : fused->finish;
-    auto body = std::visit([&](const auto& kind) { return body_of(kind, steps, finish, word.value_or(0)); }, pass.kind);
-    if (!body) return failure(std::move(body));
+    DARKROOM_TRY_VALUE(
+        auto body,
+        std::visit([&](const auto& kind) { return body_of(kind, steps, finish, word.value_or(0)); }, pass.kind));
     gpu::KernelSpec spec = pass.spec;
-    spec.body = std::move(*body);
+    spec.body = std::move(body);
     return spec;
 }
 

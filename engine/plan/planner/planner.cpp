@@ -26,8 +26,8 @@ Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const Pl
     : stack_(stack), desc_(desc), traits_(traits), target_domain_(target_domain(desc)) {}
 
 Result<Program> Planner::run() {
-    if (auto ok = check_target_color(desc_); !ok) return failure(std::move(ok));
-    if (auto ok = check_handles(); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(check_target_color(desc_));
+    DARKROOM_TRY(check_handles());
     program_.is_left_out.assign(stack_.size(), false);
     program_.is_mixable.assign(stack_.size(), true);
     program_.watch_gates.assign(desc_.watches.size(), -1);
@@ -38,27 +38,23 @@ Result<Program> Planner::run() {
     leave_out();
     resolve_inputs();
     count_readers();
-    if (auto ok = make_wires(); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(make_wires());
 
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        const auto read = scaled_input(i);
-        if (!read) return failure(read.error());
-        auto at_target = at_target_size(i, *read);
-        if (!at_target) return failure(std::move(at_target));
-        const std::size_t input = *at_target;
+        DARKROOM_TRY_VALUE(const auto read, scaled_input(i));
+        DARKROOM_TRY_VALUE(const std::size_t input, at_target_size(i, read));
         program_.entry_sizes.push_back(values_[input].size);
         if (program_.is_left_out[i]) {
             entry_values_[i] = input;
         } else {
-            auto value = add_entry(i, input);
-            if (!value) return failure(std::move(value));
-            entry_values_[i] = *value;
+            DARKROOM_TRY_VALUE(auto value, add_entry(i, input));
+            entry_values_[i] = value;
         }
-        if (auto ok = keep_output(i); !ok) return failure(std::move(ok));
-        if (auto ok = add_watches(i); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(keep_output(i));
+        DARKROOM_TRY(add_watches(i));
     }
-    if (auto ok = finish(); !ok) return failure(std::move(ok));
-    if (auto ok = add_watches(no_entry); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(finish());
+    DARKROOM_TRY(add_watches(no_entry));
     remark_watches();
     keep_values();
     return std::move(program_);
@@ -130,9 +126,9 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
             side_inputs.push_back({.version = reading.image});
             return append(entry, input, std::move(step), std::move(side_inputs), &reading);
         }
-        auto second = materialise(value, fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
-        if (!second) return failure(std::move(second));
-        side_inputs.push_back({.version = *second});
+        DARKROOM_TRY_VALUE(
+            auto second, materialise(value, fmt::format("{} reads it as its second picture", stack_[entry].desc.name)));
+        side_inputs.push_back({.version = second});
     }
     return append(entry, input, std::move(step), std::move(side_inputs));
 }
@@ -189,15 +185,14 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         else
             ++joined_entries_;
         if (!why.empty()) {
-            if (auto image = materialise(input, why); !image) return failure(std::move(image));
+            DARKROOM_TRY(materialise(input, why));
             kernel = open_kernel(input, std::move(why));
         }
     }
     // The steps of a reading come before the one that reads by it.
     const std::size_t place = kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size());
     const std::string suffix = place_suffix(static_cast<std::uint32_t>(place));
-    if (second != nullptr)
-        if (auto ok = add_steps(kernel, *second, "second" + suffix); !ok) return failure(std::move(ok));
+    if (second != nullptr) DARKROOM_TRY(add_steps(kernel, *second, "second" + suffix));
     if (stack_[entry].desc.mask.is_given()) {
         auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
         if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
@@ -210,9 +205,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         if (is_second && step.info->has_second_in_place) {
             step.is_second_resampled = !has_size(sides[i].version, from.size);
         } else if (step.is_merge || is_second) {
-            auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
-            if (!version) return failure(std::move(version));
-            sides[i].version = *version;
+            DARKROOM_TRY_VALUE(auto version, at_size(sides[i].version, from.size, fmt::format("{}.resampled", name)));
+            sides[i].version = version;
         }
         const std::string shown = step.is_merge ? "layer" : step.images[i];
         kernels_[kernel].images.push_back({shown + suffix, sides[i]});
@@ -221,7 +215,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         step.images.push_back(value);
         kernels_[kernel].values.emplace_back(value + suffix, number);
     }
-    if (auto ok = add_step(kernel, std::move(step)); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(add_step(kernel, std::move(step)));
     values_.push_back({.kernel = kernel, .size = from.size, .reader = image_reader_[entry]});
     return values_.size() - 1;
 }
@@ -240,14 +234,13 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
 
 Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Version image, bool is_always_on,
                                                  const std::string& why) {
-    auto version =
-        close_kernel(values_[index].kernel, image, facts_.at(image.index).format, Finish::None, is_always_on);
-    if (!version) return version;
+    DARKROOM_TRY_VALUE(auto version, close_kernel(values_[index].kernel, image, facts_.at(image.index).format,
+                                                  Finish::None, is_always_on));
     // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
-    values_[index].image = *version;
+    values_[index].image = version;
     values_[index].why = why;
     values_[index].kernel = no_kernel;
-    return *version;
+    return version;
 }
 
 bool Planner::has_size(graph::Version version, graph::Size size) const {
@@ -285,7 +278,7 @@ Result<> Planner::finish() {
         const std::string why = is_scaled
                                     ? "the target has an extent of its own: the picture is sampled into it"
                                     : fmt::format("{} reads the picture before the target, too", values_[last].reader);
-        if (auto image = materialise(last, why); !image) return failure(std::move(image));
+        DARKROOM_TRY(materialise(last, why));
         kernel = open_kernel(last, is_scaled ? why : values_[last].why);
     }
     if (is_scaled) kernels_[kernel].size = target_size;
@@ -298,9 +291,8 @@ Result<> Planner::finish() {
     program_.target_size = kernels_[kernel].size;
     const graph::Version target = import_host({HostImage::Kind::Target}, "target", desc_.target, program_.target_size);
     kernels_[kernel].alpha = finish_alpha(desc_, finish);
-    auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
-    if (!version) return failure(std::move(version));
-    program_.graph.keep(*version);
+    DARKROOM_TRY_VALUE(auto version, close_kernel(kernel, target, desc_.target.format, finish, true));
+    program_.graph.keep(version);
     return {};
 }
 
@@ -351,10 +343,9 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     // So does one that gives the picture another size.
     const bool has_toggle = !is_always_on && desc_.fuse && !kernel.is_alpha && !is_resampled;
     if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
-    auto version = add_pass(std::move(pass), target, 0);
-    if (!version) return version;
+    DARKROOM_TRY_VALUE(auto version, add_pass(std::move(pass), target, 0));
     if (has_toggle) {
-        fall_back(*version, kernel.picture);
+        fall_back(version, kernel.picture);
     }
     return version;
 }
@@ -392,9 +383,8 @@ Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& inf
                                                            std::uint32_t place, std::span<const std::string> images) {
     const auto key = std::tuple(&info, file, place, std::vector<std::string>(images.begin(), images.end()));
     if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
-    auto text = effect_text(info, file, place, images);
-    if (!text) return failure(std::move(text));
-    return texts_[key] = std::make_shared<const EffectText>(std::move(*text));
+    DARKROOM_TRY_VALUE(auto text, effect_text(info, file, place, images));
+    return texts_[key] = std::make_shared<const EffectText>(std::move(text));
 }
 
 Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits) {

@@ -80,10 +80,8 @@ void Planner::take_facts(graph::Version made, graph::Version from) {
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
                                          std::span<const graph::Version> more_targets) {
     pass.spec.workgroup = traits_.workgroup;
-    if (auto ok = settle_inputs(pass); !ok) return failure(std::move(ok));
-    const auto stage = traits_.stage_of(pass.spec);
-    if (!stage) return failure(stage.error());
-    pass.stage = *stage;
+    DARKROOM_TRY(settle_inputs(pass));
+    DARKROOM_TRY_VALUE(pass.stage, traits_.stage_of(pass.spec));
     // What the host's target was made for decides over what would be faster.
     const VkImageUsageFlags usage = facts_.at(target.index).usage;
     if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
@@ -106,7 +104,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
 }
 
 Result<> Planner::add_compute(ProgramPass pass) {
-    if (auto ok = settle_inputs(pass); !ok) return ok;
+    DARKROOM_TRY(settle_inputs(pass));
     pass.stage = gpu::Stage::Compute;
     graph::PassDesc desc{.name = pass.name, .gate = pass.toggle};
     add_reads(pass, desc);

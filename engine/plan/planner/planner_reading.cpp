@@ -22,15 +22,13 @@ Result<std::size_t> Planner::append_reading(std::uint32_t entry, std::size_t inp
     const bool is_image = values_[input].image.is_valid();
     Reading reading = goes_on ? readings_[values_[input].reading] : Reading{.size = values_[input].size};
     if (!goes_on) {
-        auto image = materialise(input, why);
-        if (!image) return failure(std::move(image));
-        reading.image = *image;
+        DARKROOM_TRY_VALUE(reading.image, materialise(input, why));
     }
     reading.steps.push_back(std::move(step));
     kernels_.push_back(
         {.picture = reading.image, .size = reading.size, .boundary = is_image ? values_[input].why : why});
     const std::size_t kernel = kernels_.size() - 1;
-    if (auto ok = add_steps(kernel, reading, picture_name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(add_steps(kernel, reading, picture_name));
     const graph::Size size = reading.size;
     readings_.push_back(std::move(reading));
     values_.push_back(
@@ -41,7 +39,7 @@ Result<std::size_t> Planner::append_reading(std::uint32_t entry, std::size_t inp
 Result<> Planner::add_steps(std::size_t kernel, const Reading& reading, std::string_view image) {
     for (FusedStep step : reading.steps) {
         step.reads = image;
-        if (auto ok = add_step(kernel, std::move(step)); !ok) return ok;
+        DARKROOM_TRY(add_step(kernel, std::move(step)));
     }
     return {};
 }
@@ -52,9 +50,8 @@ Result<> Planner::add_step(std::size_t kernel, FusedStep step) {
     step.first_vector = 0;
     for (const FusedStep& other : steps) step.first_vector += other.custom_vectors;
     if (!step.is_merge) {
-        auto text = text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images);
-        if (!text) return failure(std::move(text));
-        step.text = std::move(*text);
+        DARKROOM_TRY_VALUE(step.text,
+                           text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images));
     }
     steps.push_back(std::move(step));
     return {};
@@ -77,7 +74,7 @@ Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t inp
         if (!image_reader_[i].empty() || (i != entry && !program_.is_left_out[i] && !stays_in_kernel(i))) return input;
     }
     const std::string why = "the interface is composed at the target's size";
-    if (auto image = materialise(input, why); !image) return failure(std::move(image));
+    DARKROOM_TRY(materialise(input, why));
     kernels_.push_back({.picture = values_[input].image, .size = target, .boundary = why});
     values_.push_back({.kernel = kernels_.size() - 1, .size = target});
     return values_.size() - 1;

@@ -12,10 +12,9 @@ namespace darkroom::plan {
 Result<> Planner::add_watches(std::uint32_t entry) {
     for (std::uint32_t i = 0; i < desc_.watches.size(); ++i) {
         if (program_.watch_gates[i] >= 0) continue;
-        auto image = watched_output(i, entry);
-        if (!image) return failure(std::move(image));
-        if (!*image) continue;
-        if (auto ok = add_watch(i, **image); !ok) return ok;
+        DARKROOM_TRY_VALUE(auto image, watched_output(i, entry));
+        if (!image) continue;
+        DARKROOM_TRY(add_watch(i, *image));
     }
     return {};
 }
@@ -26,9 +25,9 @@ Result<std::optional<Planner::WatchedImage>> Planner::watched_output(std::uint32
     if (!wanted.entry.is_given()) return watched_image(wanted);
     if (wanted.entry == scene_color) return out = {.input = {.version = values_[0].image}};
     if (!is_of_entry(wanted.entry) || index_of(wanted.entry) > entry) return out;
-    auto version = materialise(entry_values_[index_of(wanted.entry)], "a watch looks at the picture before it");
-    if (!version) return failure(std::move(version));
-    return out = {.input = {.version = *version}};
+    DARKROOM_TRY_VALUE(auto version,
+                       materialise(entry_values_[index_of(wanted.entry)], "a watch looks at the picture before it"));
+    return out = {.input = {.version = version}};
 }
 
 std::optional<Planner::WatchedImage> Planner::watched_image(const Watch& watch) {

@@ -62,10 +62,10 @@ Result<> Planner::check_handles() const {
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EntryDesc& desc = stack_[i].desc;
-        if (auto ok = check(i, desc.input, "input"); !ok) return ok;
-        if (auto ok = check(i, desc.source, "source"); !ok) return ok;
-        if (auto ok = check(i, desc.second, "second"); !ok) return ok;
-        if (auto ok = check(i, desc.mask, "mask"); !ok) return ok;
+        DARKROOM_TRY(check(i, desc.input, "input"));
+        DARKROOM_TRY(check(i, desc.source, "source"));
+        DARKROOM_TRY(check(i, desc.second, "second"));
+        DARKROOM_TRY(check(i, desc.mask, "mask"));
         if (stack_[i].info->has_second && !second_of(i).is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, stack_[i].info->name));
@@ -170,8 +170,7 @@ Result<> Planner::make_wires() {
                 program_.fixed_images.back().picture = stack_[i].resources->at(handle.id);
                 values_.push_back({.image = image, .size = size, .why = "a picture that was given starts here"});
             } else if (handle.is_previous) {
-                auto value = previous_of(handle);
-                if (!value) return failure(std::move(value));
+                DARKROOM_TRY(previous_of(handle));
             } else if (handle == ui_layer) {
                 if (!is_given(desc_, FrameImage::Ui)) continue;
                 const graph::Version image = import_input(frame_input(FrameImage::Ui));
@@ -181,8 +180,7 @@ Result<> Planner::make_wires() {
                 kernels_.push_back(
                     {.picture = values_[0].image, .boundary = "the scene's alpha becomes a picture", .is_alpha = true});
                 values_.push_back({.kernel = kernels_.size() - 1});
-                if (auto image = materialise(values_.size() - 1, "the scene's alpha starts here"); !image)
-                    return failure(std::move(image));
+                DARKROOM_TRY(materialise(values_.size() - 1, "the scene's alpha starts here"));
             } else {
                 continue;
             }
@@ -218,7 +216,7 @@ Result<> Planner::previous_of(Handle handle) {
     kept_outputs_[entry] = made.current;
     values_.push_back({.image = made.previous, .size = size, .why = fmt::format("{} of the frame before", name)});
     if (entry != no_entry) return {};
-    if (auto written = copy_into(0, made.current); !written) return failure(std::move(written));
+    DARKROOM_TRY(copy_into(0, made.current));
     return {};
 }
 
@@ -253,16 +251,13 @@ Result<std::size_t> Planner::scaled_input(std::uint32_t entry) {
     const graph::Size size =
         program_.is_left_out[entry] ? values_[input].size : own.scaled(desc.scale.numerator, desc.scale.denominator);
     if (size == values_[input].size) return input;
-    if (auto ok = check_size(entry, size); !ok) return failure(std::move(ok));
-    auto image = materialise(input, fmt::format("{} works at another size", desc.name));
-    if (!image) return failure(std::move(image));
+    DARKROOM_TRY(check_size(entry, size));
+    DARKROOM_TRY_VALUE(auto image, materialise(input, fmt::format("{} works at another size", desc.name)));
     kernels_.push_back(
-        {.picture = *image, .size = size, .boundary = fmt::format("{} works at another size", desc.name)});
+        {.picture = image, .size = size, .boundary = fmt::format("{} works at another size", desc.name)});
     values_.push_back({.kernel = kernels_.size() - 1, .size = size});
     if (stack_[entry].info->touch == Touch::Warp)
-        if (auto made = materialise(values_.size() - 1, fmt::format("{} reads it at moved coordinates", desc.name));
-            !made)
-            return failure(std::move(made));
+        DARKROOM_TRY(materialise(values_.size() - 1, fmt::format("{} reads it at moved coordinates", desc.name)));
     return values_.size() - 1;
 }
 
@@ -282,9 +277,8 @@ Result<> Planner::keep_output(std::uint32_t entry) {
         auto made = materialise_into(value, image, true, why);
         return made ? Result<>{} : failure(std::move(made));
     }
-    auto copied = copy_into(value, image);
-    if (!copied) return failure(std::move(copied));
-    values_.push_back({.image = *copied, .size = values_[value].size, .why = why});
+    DARKROOM_TRY_VALUE(auto copied, copy_into(value, image));
+    values_.push_back({.image = copied, .size = values_[value].size, .why = why});
     entry_values_[entry] = values_.size() - 1;
     return {};
 }

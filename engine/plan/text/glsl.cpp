@@ -230,7 +230,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
         const bool may_be_literal = row.is_loop_count || row.kind == Kind::Choice || row.kind == Kind::Toggle;
         if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
     }
-    if (auto ok = append_with_includes(out.glsl, renamed, own.shown); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(append_with_includes(out.glsl, renamed, own.shown));
     out.asks_rays_meet = out.glsl.find("rays_meet") != std::string::npos;
     return out;
 }
@@ -390,20 +390,15 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     const auto include = [&](std::string_view name) {
         return append_with_includes(helpers, fmt::format("#include \"{}\"\n", name), "fused kernel");
     };
-    if (has_merge)
-        if (auto ok = include("shared/merge.glsl"); !ok) return failure(std::move(ok));
-    if (has_reading)
-        if (auto ok = include("shared/place.glsl"); !ok) return failure(std::move(ok));
-    if (has_wrap)
-        if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
-    if (has_alpha)
-        if (auto ok = include("shared/alpha.glsl"); !ok) return failure(std::move(ok));
+    if (has_merge) DARKROOM_TRY(include("shared/merge.glsl"));
+    if (has_reading) DARKROOM_TRY(include("shared/place.glsl"));
+    if (has_wrap) DARKROOM_TRY(include("shared/color_state.glsl"));
+    if (has_alpha) DARKROOM_TRY(include("shared/alpha.glsl"));
     if (alpha.divides) code += "    color = alpha_divided(color);\n";
     if (finish != Finish::None) {
-        if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(include("shared/srgb.glsl"));
         const bool may_convert = finish == Finish::Convert || finish == Finish::OfFrameOrConvert;
-        if (may_convert && !has_wrap)
-            if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
+        if (may_convert && !has_wrap) DARKROOM_TRY(include("shared/color_state.glsl"));
         code += finish_code(finish, finish_word);
     }
     if (alpha.multiplies) code += "    color = alpha_multiplied(color);\n";

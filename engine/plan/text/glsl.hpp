@@ -6,7 +6,6 @@
 
 #include <array>
 #include <darkroom/effect.hpp>
-#include <darkroom/result.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +14,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/try.hpp"
 #include "gpu/kernel/block.hpp"
 
 namespace darkroom::plan {

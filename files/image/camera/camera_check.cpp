@@ -59,8 +59,7 @@ Result<> check_camera(const FrameCamera& camera) {
          {std::pair("worldToCamera", &camera.world_to_camera), std::pair("darkroom:projection", &camera.projection),
           std::pair("darkroom:previousWorldToCamera", &camera.previous_world_to_camera),
           std::pair("darkroom:previousProjection", &camera.previous_projection)})
-        if (*matrix)
-            if (auto checked = check_camera_matrix(name, **matrix); !checked) return checked;
+        if (*matrix) DARKROOM_TRY(check_camera_matrix(name, **matrix));
     // Renderers stay within a pixel; a much larger number is an error.
     constexpr float most = 64;
     for (const auto& [name, jitter] :

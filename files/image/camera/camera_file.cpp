@@ -64,7 +64,7 @@ Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& c
     }
     const auto value = matrix(node);
     if (!value) return user_error(fmt::format("{}: an array of 16 numbers is needed", key));
-    if (auto checked = check_camera_matrix(key, *value); !checked) return checked;
+    DARKROOM_TRY(check_camera_matrix(key, *value));
     if (key == "projection") {
         camera.projection = value;
         return {};
@@ -78,13 +78,11 @@ Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& c
 }  // namespace
 
 Result<FrameCamera> read_camera(const std::filesystem::path& path) {
-    auto bytes = read_file(path, {.max_size = max_toml_bytes});
-    if (!bytes) return failure(std::move(bytes));
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    const Result<toml::table> table = parse_toml(text, one_printable_line(path.string()));
-    if (!table) return failure(table.error());
+    DARKROOM_TRY_VALUE(auto bytes, read_file(path, {.max_size = max_toml_bytes}));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    DARKROOM_TRY_VALUE(const toml::table table, parse_toml(text, one_printable_line(path.string())));
     FrameCamera camera;
-    for (const auto& [key, node] : *table)
+    for (const auto& [key, node] : table)
         if (auto read = read_entry(key.str(), node, camera); !read)
             return user_error(
                 fmt::format("{}:{}: {}", path.string(), node.source().begin.line, std::move(read).error().text));

@@ -29,9 +29,7 @@ Decoder::~Decoder() = default;
 Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max_threads, DecodingPlace place) {
     auto state = std::make_unique<State>();
     state->path = path.string();
-    auto bytes = read_image_file(path);
-    if (!bytes) return failure(std::move(bytes));
-    state->bytes = std::move(*bytes);
+    DARKROOM_TRY_VALUE(state->bytes, read_image_file(path));
     auto opened = open_upright(state->bytes, max_threads, place);
     if (!opened) return state->error(opened.error());
     state->opened = std::move(*opened);
@@ -95,7 +93,7 @@ Result<> Decoder::read(std::size_t part, std::uint32_t first, std::uint32_t coun
                               .first = reinterpret_cast<std::byte*>(samples.data() + c),
                               .pixel_bytes = static_cast<std::ptrdiff_t>(count * sizeof(float)),
                               .row_bytes = static_cast<std::ptrdiff_t>(row_values * sizeof(float))});
-        if (auto done = read_rows(part, row, rows, places); !done) return done;
+        DARKROOM_TRY(read_rows(part, row, rows, places));
         sink(row, rows, samples);
     }
     return {};

@@ -68,9 +68,9 @@ Result<> JpegScans::add(std::span<const std::byte> stream) { return add_scans(wa
 
 Result<> check_jpeg(std::span<const std::byte> file) {
     const JpegStream stream = walk(file);
-    if (auto checked = check_decoded_size(stream.samples, file.size()); !checked) return checked;
+    DARKROOM_TRY(check_decoded_size(stream.samples, file.size()));
     std::uint64_t work = 0;
-    if (auto checked = add_scans(stream, work); !checked) return checked;
+    DARKROOM_TRY(add_scans(stream, work));
     if (!stream.has_end) return user_error("truncated: unexpected end of file, no end-of-image marker");
     return {};
 }

@@ -5,8 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <span>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

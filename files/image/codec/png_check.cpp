@@ -46,7 +46,7 @@ Result<std::uint64_t> check_header(std::span<const std::byte> data, std::size_t 
         return user_error(
             fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header", width,
                         height, file_size));
-    if (Result<> checked = check_decoded_size(bytes, file_size); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_decoded_size(bytes, file_size));
     return 2 * (bytes + 4 * height) + (std::uint64_t{1} << 16);
 }
 
@@ -122,21 +122,18 @@ class PngChecker {
         if (file_.size() < 8) return user_error("truncated: unexpected end of file");
         append(out_, file_.first(8));
         for (std::size_t position = 8;;) {
-            const Result<Chunk> chunk = chunk_at(position);
-            if (!chunk) return failure(chunk.error());
-            if (auto done = take(*chunk, position == 8); !done) return failure(std::move(done));
-            position += chunk->whole.size();
-            if (chunk->type == "IEND") break;
+            DARKROOM_TRY_VALUE(const Chunk chunk, chunk_at(position));
+            DARKROOM_TRY(take(chunk, position == 8));
+            position += chunk.whole.size();
+            if (chunk.type == "IEND") break;
         }
         if (header_[9] == std::byte{3})
-            if (auto checked = check_palette({.width = big_endian(header_),
-                                              .height = big_endian(std::span(header_).subspan(4)),
-                                              .bits = std::to_integer<std::uint32_t>(header_[8]),
-                                              .is_interlaced = header_[12] != std::byte{0},
-                                              .colors = colors_},
-                                             packed_);
-                !checked)
-                return failure(std::move(checked));
+            DARKROOM_TRY(check_palette({.width = big_endian(header_),
+                                        .height = big_endian(std::span(header_).subspan(4)),
+                                        .bits = std::to_integer<std::uint32_t>(header_[8]),
+                                        .is_interlaced = header_[12] != std::byte{0},
+                                        .colors = colors_},
+                                       packed_));
         return is_as_it_was_ ? std::vector<std::byte>() : std::move(out_);
     }
 
@@ -156,9 +153,7 @@ class PngChecker {
         if (is_first != (chunk.type == "IHDR"))
             return user_error("malformed header: the first chunk alone must be IHDR");
         if (is_first) {
-            const Result<std::uint64_t> most = check_header(chunk.data, file_.size());
-            if (!most) return failure(most.error());
-            max_packed_ = *most;
+            DARKROOM_TRY_VALUE(max_packed_, check_header(chunk.data, file_.size()));
             std::ranges::copy(chunk.data, header_.begin());
         }
         if (chunk.type == "PLTE") {
@@ -190,8 +185,7 @@ class PngChecker {
             return {};
         }
         seen_.push_back(chunk.type);
-        if (chunk.type == "iCCP")
-            if (auto checked = check_profile(chunk.data); !checked) return checked;
+        if (chunk.type == "iCCP") DARKROOM_TRY(check_profile(chunk.data));
         is_as_it_was_ = is_as_it_was_ && chunk.type != "eXIf";
         if (chunk.type == "eXIf")
             append(out_, exif_of(orientation_of_exif(chunk.data)));

@@ -4,9 +4,10 @@
 // of a few bytes may inflate to gigabytes, which a decoder would do.
 
 #include <cstddef>
-#include <darkroom/result.hpp>
 #include <span>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

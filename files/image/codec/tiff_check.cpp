@@ -74,9 +74,9 @@ class TiffChecker {
     explicit TiffChecker(std::span<const std::byte> file) : file_(file) {}
 
     Result<std::vector<std::byte>> run() {
-        if (auto read = read_directory(); !read) return failure(std::move(read));
-        if (auto checked = check_picture(); !checked) return failure(std::move(checked));
-        if (auto checked = check_chunks(); !checked) return failure(std::move(checked));
+        DARKROOM_TRY(read_directory());
+        DARKROOM_TRY(check_picture());
+        DARKROOM_TRY(check_chunks());
         return cleaned();
     }
 
@@ -183,9 +183,8 @@ class TiffChecker {
               Field{&bits_, bits_per_sample, 1, 64}, Field{&samples_, samples_per_pixel, 1, max_samples},
               Field{&compression_, compression_tag, uncompressed, 65535}, Field{&planar_, planar_configuration, 1, 2},
               Field{&rows_, rows_per_strip, any, any}}) {
-            const Result<std::uint64_t> read = count_of(field.tag, field.otherwise, field.most);
-            if (!read) return failure(read.error());
-            *field.to = *read;
+            DARKROOM_TRY_VALUE(const std::uint64_t read, count_of(field.tag, field.otherwise, field.most));
+            *field.to = read;
         }
         constexpr auto most = static_cast<std::uint64_t>(max_picture_side);
         if (std::max(width_, height_) > most)
@@ -196,7 +195,7 @@ class TiffChecker {
         const Entry* const bits = find(bits_per_sample);
         for (std::uint64_t i = 1; bits != nullptr && i < std::min(samples_, bits->count); ++i)
             if (value(*bits, i) != bits_) return malformed("samples of different numbers of bits");
-        if (Result<> done = check_format(); !done) return done;
+        DARKROOM_TRY(check_format());
         return check_palette();
     }
 
@@ -274,11 +273,8 @@ class TiffChecker {
         if (is_tiled && chunk_bytes > max_bytes)
             return user_error(fmt::format("tiles of {}x{} pixels need {} bytes each, at most {} are allowed",
                                           chunk_width_, chunk_height_, chunk_bytes, max_bytes));
-        if (auto checked = check_decoded_size(chunk_bytes * (is_tiled ? columns * lines : 1) * planes, file_.size());
-            !checked)
-            return checked;
-        if (auto checked = check_decoded_size((width_ * samples_ * bits_ + 7) / 8 * height_, file_.size()); !checked)
-            return checked;
+        DARKROOM_TRY(check_decoded_size(chunk_bytes * (is_tiled ? columns * lines : 1) * planes, file_.size()));
+        DARKROOM_TRY(check_decoded_size((width_ * samples_ * bits_ + 7) / 8 * height_, file_.size()));
 
         const Entry* const offsets = find(is_tiled ? tile_offsets : strip_offsets);
         const Entry* const sizes = find(is_tiled ? tile_byte_counts : strip_byte_counts);
@@ -307,7 +303,7 @@ class TiffChecker {
                 return user_error(
                     fmt::format("truncated: {} {} of {} has {} bytes of {}", what, i + 1, count, size, needed));
             if (compression_ != jpeg_compressed) continue;
-            if (auto counted = scans.add(file_.subspan(at, size)); !counted) return counted;
+            DARKROOM_TRY(scans.add(file_.subspan(at, size)));
         }
         return {};
     }

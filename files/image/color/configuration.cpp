@@ -21,7 +21,7 @@ Result<std::shared_ptr<const ColorChain>> made_of(const std::filesystem::path& p
     const auto refuse = [&](const Error& error) {
         return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});
     };
-    if (auto checked = check_configuration(path); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_configuration(path));
     const Result<const ColorChains*> chains = color_chains();
     if (!chains) return refuse(chains.error());
     Result<std::unique_ptr<ColorChain>> chain = make(**chains);

@@ -73,18 +73,17 @@ SampleErrors measure(std::span<const float> reference, std::span<const float> te
 }
 
 Result<Comparison> compare(const Picture& reference, const Picture& test, const FlipDesc& desc) {
-    Result<FlipErrors> errors = flip(reference, test, desc);
-    if (!errors) return failure(std::move(errors));
+    DARKROOM_TRY_VALUE(FlipErrors errors, flip(reference, test, desc));
     const SampleLayout rgb{.width = reference.width};
     const SampleLayout alpha{.width = reference.width, .first = 3, .count = 1};
     std::optional<double> peak;
     if (desc.encoding == PictureEncoding::Display) peak = 1.0;
     Comparison out{measure(reference.pixels, test.pixels, rgb, peak)};
     out.alpha = measure(reference.pixels, test.pixels, alpha, 1.0);
-    out.flip_mean = errors->mean;
-    out.flip_weighted_median = errors->weighted_median;
-    out.flip_max = errors->max;
-    out.flip_map = paint_errors(errors->errors, errors->width, errors->height);
+    out.flip_mean = errors.mean;
+    out.flip_weighted_median = errors.weighted_median;
+    out.flip_max = errors.max;
+    out.flip_map = paint_errors(errors.errors, errors.width, errors.height);
     return out;
 }
 

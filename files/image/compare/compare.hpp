@@ -5,10 +5,10 @@
 
 #include <array>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <optional>
 #include <span>
 
+#include "core/try.hpp"
 #include "image/compare/flip.hpp"
 #include "image/picture/picture.hpp"
 

@@ -25,9 +25,9 @@ Result<> ContactSheet::add(std::string name, const Picture& reference, const Pic
     const std::array<std::pair<const Picture*, PictureEncoding>, 3> pictures{
         {{&reference, encoding}, {&test, encoding}, {&comparison.flip_map, PictureEncoding::Display}}};
     for (std::size_t i = 0; i < pictures.size(); ++i) {
-        Result<Picture> made = no_larger_than(shown_picture(*pictures[i].first, pictures[i].second), max_cell);
-        if (!made) return failure(std::move(made));
-        row.cells[i] = std::move(*made);
+        DARKROOM_TRY_VALUE(Picture made,
+                           no_larger_than(shown_picture(*pictures[i].first, pictures[i].second), max_cell));
+        row.cells[i] = std::move(made);
     }
     rows_.insert(place, std::move(row));
     if (rows_.size() > max_rows) rows_.pop_back();

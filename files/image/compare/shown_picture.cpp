@@ -84,9 +84,8 @@ Result<Picture> no_larger_than(Picture picture, std::uint32_t most) {
     const std::uint32_t width = scaled(picture.width), height = scaled(picture.height);
     FrameFile frame;
     frame.color = std::move(picture);
-    Result<FrameFile> small = resize(std::move(frame), {width, height});
-    if (!small) return failure(std::move(small));
-    return std::move(small->color);
+    DARKROOM_TRY_VALUE(FrameFile small, resize(std::move(frame), {width, height}));
+    return std::move(small.color);
 }
 
 Result<std::vector<std::byte>> png_of(const Picture& picture) {

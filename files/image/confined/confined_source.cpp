@@ -132,7 +132,7 @@ Result<> ConfinedSource::read(std::size_t part, std::uint32_t row, std::uint32_t
     for (const std::uint32_t end = row + rows; row < end;) {
         // Up to where a unit ends.
         const auto stop = static_cast<std::uint32_t>(std::min<std::size_t>(end, row / unit * unit + fitting));
-        if (auto done = ask(part, row, stop - row, band, nothing); !done) return done;
+        DARKROOM_TRY(ask(part, row, stop - row, band, nothing));
         for (SamplePlace& place : band) place.first += static_cast<std::ptrdiff_t>(stop - row) * place.row_bytes;
         row = stop;
     }
@@ -141,9 +141,8 @@ Result<> ConfinedSource::read(std::size_t part, std::uint32_t row, std::uint32_t
 
 Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t rows,
                              std::span<const SamplePlace> places, std::vector<std::byte>& answer) {
-    const auto taken = DecoderPool::shared().take(number_, needs_openimageio_);
-    if (!taken) return failure(taken.error());
-    DecoderProcess& decoder = **taken;
+    DARKROOM_TRY_VALUE(const auto taken, DecoderPool::shared().take(number_, needs_openimageio_));
+    DecoderProcess& decoder = *taken;
     const Lease lease(decoder);
     ConfinedProcess& process = decoder.process;
 
@@ -159,18 +158,14 @@ Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t 
     SharedMemory file;
     std::vector<int> descriptors;
     if (decoder.source != number_) {
-        auto made = SharedMemory::holding(file_);
-        if (!made) return failure(std::move(made));
-        file = std::move(*made);
+        DARKROOM_TRY_VALUE(file, SharedMemory::holding(file_));
         descriptors.push_back(file.descriptor());
         request.file_size = file_.size();
         decoder.source = number_;
     }
     if (decoder.memory.size() < size) {
         decoder.samples = {};
-        auto made = SharedMemory::make(std::max(size, std::min(usual_memory, 2 * size)));
-        if (!made) return failure(std::move(made));
-        decoder.memory = std::move(*made);
+        DARKROOM_TRY_VALUE(decoder.memory, SharedMemory::make(std::max(size, std::min(usual_memory, 2 * size))));
         decoder.samples = Mapping(decoder.memory.descriptor(), decoder.memory.size(), false);
         descriptors.push_back(decoder.memory.descriptor());
         request.memory_size = decoder.memory.size();

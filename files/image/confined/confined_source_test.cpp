@@ -33,9 +33,8 @@ using Source = Result<std::unique_ptr<PictureSource>>;
 Source open_here(FileKind kind, std::span<const std::byte> bytes) {
     if (kind == FileKind::OpenExr) return ExrSource::open(bytes, 1);
     if (kind == FileKind::WebP) return open_webp(bytes);
-    const auto library = codecs();
-    if (!library) return failure(library.error());
-    return (*library)->open(kind, bytes);
+    DARKROOM_TRY_VALUE(const auto library, codecs());
+    return library->open(kind, bytes);
 }
 
 /// All samples of a part, as floats or as they are, in bands of so many rows.
@@ -53,8 +52,7 @@ Result<std::vector<std::byte>> samples_of(PictureSource& source, std::size_t num
                               .first = out.data() + first * row + c * size_of(kind),
                               .pixel_bytes = static_cast<std::ptrdiff_t>(pixel),
                               .row_bytes = static_cast<std::ptrdiff_t>(row)});
-        auto done = source.read_rows(number, first, std::min(band, part.height - first), places);
-        if (!done) return failure(std::move(done));
+        DARKROOM_TRY(source.read_rows(number, first, std::min(band, part.height - first), places));
     }
     return out;
 }

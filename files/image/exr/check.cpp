@@ -84,8 +84,8 @@ Result<> check_chunk(Wide width, Wide height, const CheckedPart& part) {
 
 Result<> check_part(CheckedPart& part, bool is_tiled, std::size_t file_size) {
     if (!part.data || !part.display || !part.compression) return malformed("a window or the compression is missing");
-    if (auto checked = check_window(*part.display, "display window"); !checked) return checked;
-    if (auto checked = check_window(*part.data, "data window"); !checked) return checked;
+    DARKROOM_TRY(check_window(*part.display, "display window"));
+    DARKROOM_TRY(check_window(*part.data, "data window"));
     if (part.channel_count == 0) return user_error("has no channels");
     if (*part.compression >= compressions.size())
         return malformed(fmt::format("compression {}, [0, 9] is allowed", *part.compression));
@@ -167,7 +167,7 @@ Result<> check_exr(std::span<const std::byte> file) {
     AttributeCount attributes;
     for (;;) {
         CheckedPart part;
-        if (auto read = read_part(reader, part, attributes); !read) return read;
+        DARKROOM_TRY(read_part(reader, part, attributes));
         parts.push_back(std::move(part));
         if (!is_multi_part) break;
         if (parts.size() > 256) return malformed("more than 256 parts");
@@ -193,19 +193,18 @@ Result<> check_exr(std::span<const std::byte> file) {
         if (!part.type.empty() && part.type.starts_with("tiledimage") != is_tiled.back())
             return malformed(fmt::format("the type is {}, the version field says {}", one_printable_line(part.type),
                                          is_tiled.back() ? "tiled" : "scan lines"));
-        if (auto checked = check_part(part, is_tiled.back(), file.size()); !checked) return checked;
+        DARKROOM_TRY(check_part(part, is_tiled.back(), file.size()));
         total += part.chunk_count;
         decoded += static_cast<std::uint64_t>(part.bytes);
     }
-    if (auto checked = check_decoded_size(decoded, file.size()); !checked) return checked;
-    if (auto checked = check_proportions(parts); !checked) return checked;
+    DARKROOM_TRY(check_decoded_size(decoded, file.size()));
+    DARKROOM_TRY(check_proportions(parts));
     if (static_cast<Wide>(reader.left() / 8) < total)
         return user_error(fmt::format("truncated: unexpected end of file in the table of {} chunks", total));
     const std::size_t first_chunk = reader.position() + static_cast<std::size_t>(total) * 8;
     Reader table = reader;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (auto checked = check_chunks(table, parts[i], is_tiled[i], is_multi_part, file, first_chunk); !checked)
-            return checked;
+        DARKROOM_TRY(check_chunks(table, parts[i], is_tiled[i], is_multi_part, file, first_chunk));
         table.block(parts[i].chunk_count * 8);
     }
     return {};

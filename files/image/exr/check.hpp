@@ -6,8 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <span>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

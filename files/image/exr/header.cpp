@@ -136,9 +136,9 @@ Result<> read_part(Reader& reader, CheckedPart& part, AttributeCount& count) {
         if (size < 0) return malformed(fmt::format("an attribute of {} bytes", size));
         const auto value = reader.block(size);
         if (reader.is_past_end()) return cut_off();
-        if (auto counted = count_attribute(type, value, count); !counted) return counted;
-        if (auto checked = check_size(name, type, value.size()); !checked) return checked;
-        if (auto read = read_attribute(name, type, value, part); !read) return read;
+        DARKROOM_TRY(count_attribute(type, value, count));
+        DARKROOM_TRY(check_size(name, type, value.size()));
+        DARKROOM_TRY(read_attribute(name, type, value, part));
     }
 }
 

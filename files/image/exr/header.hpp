@@ -8,11 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <darkroom/result.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "core/try.hpp"
 
 namespace darkroom::exr {
 

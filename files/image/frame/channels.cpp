@@ -282,11 +282,10 @@ Result<> Finder::find_color(FrameChannels& found) const {
             found.color.channels = {lone->channels[0], lone->channels[0], lone->channels[0], -1};
             return {};
         }
-        auto set = mapped_set("color", *name, components);
-        if (!set) return failure(std::move(set));
-        found.color = *set;
+        DARKROOM_TRY_VALUE(auto set, mapped_set("color", *name, components));
+        found.color = set;
         for (const Layer& layer : layers_)
-            if (layer.part == set->part && layer.name == set->prefix) found.color.channels[3] = layer.channel("a");
+            if (layer.part == set.part && layer.name == set.prefix) found.color.channels[3] = layer.channel("a");
         return {};
     }
     const auto first = [&](const auto& accept) {
@@ -324,9 +323,7 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         constexpr std::array<std::string_view, 2> components{"z", "v"};
         found.depth = lone_channel(*name);
         if (found.depth) return {};
-        auto set = mapped_set("depth", *name, components);
-        if (!set) return failure(std::move(set));
-        found.depth = *set;
+        DARKROOM_TRY_VALUE(found.depth, mapped_set("depth", *name, components));
         return {};
     }
     const auto is_lone_z = [](const Layer& l) { return l.has("z") && !l.has("x"); };
@@ -365,9 +362,7 @@ Result<> Finder::find_normals(FrameChannels& found) const {
     if (const std::string* name = mapped("normals")) {
         if (*name == no_layer) return {};
         constexpr std::array<std::string_view, 2> components{"xyz", "rgb"};
-        auto set = mapped_set("normals", *name, components);
-        if (!set) return failure(std::move(set));
-        found.normals = *set;
+        DARKROOM_TRY_VALUE(found.normals, mapped_set("normals", *name, components));
         return {};
     }
     const Layer* layer = best([](const Layer& l) {
@@ -384,11 +379,10 @@ Result<> Finder::find_velocity(FrameChannels& found) const {
     if (const std::string* name = mapped("velocity")) {
         if (*name == no_layer) return {};
         constexpr std::array<std::string_view, 3> components{"xy", "uv", "rg"};
-        auto set = mapped_set("velocity", *name, components);
-        if (!set) return failure(std::move(set));
-        found.velocity = *set;
+        DARKROOM_TRY_VALUE(auto set, mapped_set("velocity", *name, components));
+        found.velocity = set;
         found.is_velocity_y_up = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& l) {
-            return l.part == set->part && l.name == set->prefix && is_blender(l);
+            return l.part == set.part && l.name == set.prefix && is_blender(l);
         });
         return {};
     }
@@ -425,15 +419,15 @@ Result<FrameChannels> Finder::find() {
         return is_known;
     });
     FrameChannels found;
-    if (auto done = choose_view(found); !done) return failure(std::move(done));
-    if (auto done = find_color(found); !done) return failure(std::move(done));
+    DARKROOM_TRY(choose_view(found));
+    DARKROOM_TRY(find_color(found));
     color_ = found.color;
     for (const Layer& layer : layers_)
         if (view_.empty() && layer.part == color_.part && layer.name == color_.prefix) view_ = layer.view;
     found.view = view_;
-    if (auto done = find_depth(found); !done) return failure(std::move(done));
-    if (auto done = find_normals(found); !done) return failure(std::move(done));
-    if (auto done = find_velocity(found); !done) return failure(std::move(done));
+    DARKROOM_TRY(find_depth(found));
+    DARKROOM_TRY(find_normals(found));
+    DARKROOM_TRY(find_velocity(found));
     find_masks(found);
     for (const std::string& what : known)
         if ((what == "depth" && !found.depth) || (what == "normals" && !found.normals) ||

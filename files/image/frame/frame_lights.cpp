@@ -51,7 +51,7 @@ Result<> check_light(const FrameLight& light, std::string_view what) {
         const Plane<1>& depth = cascade.depth;
         if (!is_finite(cascade.world_to_cascade) || !std::isfinite(cascade.split))
             return user_error(fmt::format("{}: a number of a cascade is not finite", what));
-        if (auto checked = check_side(what, depth.width, depth.height); !checked) return checked;
+        DARKROOM_TRY(check_side(what, depth.width, depth.height));
         if (depth.width != light.cascades.front().depth.width ||
             depth.values.size() != std::size_t{depth.width} * depth.height)
             return user_error(fmt::format("{}: its cascades differ in size", what));
@@ -69,8 +69,7 @@ class LightReader {
         if (!is_whole(count, max_frame_lights))
             return user_error(
                 fmt::format("{} = {}; whole numbers in [0, {}] are allowed", count_name, count, max_frame_lights));
-        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-            if (auto done = read_light(i); !done) return done;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) DARKROOM_TRY(read_light(i));
         warn_of_unused_parts();
         return {};
     }
@@ -105,13 +104,12 @@ class LightReader {
 
     Result<> read_light(std::size_t number) {
         FrameLight light;
-        if (auto done = read_numbers(number, "direction", light.direction); !done) return done;
-        if (auto done = read_numbers(number, "color", light.color); !done) return done;
-        if (auto done = read_numbers(number, "volumetricColor", light.volumetric_color); !done) return done;
-        if (auto done = read_numbers(number, "volumetricIntensity", {&light.volumetric_intensity, 1}); !done)
-            return done;
+        DARKROOM_TRY(read_numbers(number, "direction", light.direction));
+        DARKROOM_TRY(read_numbers(number, "color", light.color));
+        DARKROOM_TRY(read_numbers(number, "volumetricColor", light.volumetric_color));
+        DARKROOM_TRY(read_numbers(number, "volumetricIntensity", {&light.volumetric_intensity, 1}));
         if (const auto shadow = decoder_.number(part_, attribute_name(number, "shadow")))
-            if (auto done = read_shadow(number, *shadow, light); !done) return done;
+            DARKROOM_TRY(read_shadow(number, *shadow, light));
         frame_.lights.push_back(std::move(light));
         return {};
     }
@@ -136,9 +134,8 @@ class LightReader {
     }
 
     Result<> read_shadow(std::size_t number, double shadow, FrameLight& light) {
-        const Result<std::size_t> index = find_part(number, shadow);
-        if (!index) return failure(index.error());
-        const FilePart& part = decoder_.parts()[*index];
+        DARKROOM_TRY_VALUE(const std::size_t index, find_part(number, shadow));
+        const FilePart& part = decoder_.parts()[index];
         const std::size_t count = part.channels.size();
         std::vector<std::size_t> cascade_of(count);  // by the channel's place in the file
         for (std::size_t i = 0; i < count; ++i) {
@@ -151,19 +148,19 @@ class LightReader {
             if (part.kinds[i] == SampleKind::Integer32)
                 return user_error(fmt::format("{} has 32-bit integers; half or float is needed", part.name));
         }
-        if (auto checked = check_side(part.name, part.width, part.height); !checked) return checked;
+        DARKROOM_TRY(check_side(part.name, part.width, part.height));
         texels_ += std::uint64_t{part.width} * part.height * count;
-        if (auto checked = check_total(texels_); !checked) return checked;
+        DARKROOM_TRY(check_total(texels_));
 
         std::vector<float> splits(count);
-        if (auto done = read_numbers(number, "splits", splits); !done) return done;
+        DARKROOM_TRY(read_numbers(number, "splits", splits));
         light.cascades.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
             FrameCascade& cascade = light.cascades[i];
             cascade.split = splits[i];
-            if (auto done = read_numbers(number, matrix_name(i), cascade.world_to_cascade); !done) return done;
+            DARKROOM_TRY(read_numbers(number, matrix_name(i), cascade.world_to_cascade));
         }
-        return options_.has_shadow_depths ? read_depths(*index, cascade_of, light) : Result<>{};
+        return options_.has_shadow_depths ? read_depths(index, cascade_of, light) : Result<>{};
     }
 
     Result<> read_depths(std::size_t index, const std::vector<std::size_t>& cascade_of, FrameLight& light) {
@@ -185,7 +182,7 @@ class LightReader {
                 }
             }
         };
-        if (auto read = decoder_.read(index, 0, static_cast<std::uint32_t>(count), take); !read) return read;
+        DARKROOM_TRY(decoder_.read(index, 0, static_cast<std::uint32_t>(count), take));
         if (outside > 0)
             frame_.warnings.push_back(fmt::format("{}: {} depths are not in [0, 1]: clamped", part.name, outside));
         return {};
@@ -209,7 +206,7 @@ Result<> check_lights(std::span<const FrameLight> lights) {
                                       lights.size(), shadows, max_frame_lights, max_frame_shadows));
     std::uint64_t texels = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        if (auto checked = check_light(lights[i], fmt::format("light {}", i)); !checked) return checked;
+        DARKROOM_TRY(check_light(lights[i], fmt::format("light {}", i)));
         for (const FrameCascade& cascade : lights[i].cascades) texels += cascade.depth.values.size();
     }
     return check_total(texels);

@@ -179,7 +179,7 @@ Result<> FrameReader::make_color() {
     frame_.color.width = source.display_width;
     frame_.color.height = source.display_height;
     const std::size_t pixels = std::size_t{source.display_width} * source.display_height;
-    if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
+    DARKROOM_TRY(check(found_.color, 4, "the color"));
     frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
     frame_.has_alpha = found_.color.channels[3] >= 0;
     frame_.is_associated = frame_.has_alpha && source.is_associated && !is_integer();
@@ -218,7 +218,7 @@ void FrameReader::finish_color() {
 
 Result<> FrameReader::make_depth() {
     if (!found_.depth || !options_.has_depth) return {};
-    if (auto checked = check(*found_.depth, 1, "the depth"); !checked) return checked;
+    DARKROOM_TRY(check(*found_.depth, 1, "the depth"));
     frame_.depth.emplace(frame_.color.width, frame_.color.height);
     std::fill(frame_.depth->values.begin(), frame_.depth->values.end(), sky_depth);
     add_place(*found_.depth, 1, frame_.depth->values);
@@ -261,7 +261,7 @@ void FrameReader::finish_depth() {
 // V-Ray writes normals in the space of its camera (x right, y down, z forward), others in that of the world.
 Result<> FrameReader::make_normals() {
     if (!found_.normals || !options_.has_normals) return {};
-    if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
+    DARKROOM_TRY(check(*found_.normals, 3, "the normals"));
     if (is_vray_ && !options_.names.contains("normals") && !options_.normals_space) {
         vray_normals_ = world_to_camera();
         if (!vray_normals_ || !check_camera_matrix("", *vray_normals_)) {
@@ -310,7 +310,7 @@ void FrameReader::finish_normals() {
 
 Result<> FrameReader::make_velocity() {
     if (!found_.velocity || !options_.has_velocity) return {};
-    if (auto checked = check(*found_.velocity, 2, "the motion"); !checked) return checked;
+    DARKROOM_TRY(check(*found_.velocity, 2, "the motion"));
     frame_.velocity.emplace();
     frame_.velocity->width = frame_.color.width;
     frame_.velocity->height = frame_.color.height;
@@ -345,13 +345,13 @@ void FrameReader::finish_velocity() {
 
 Result<> FrameReader::make_masks() {
     const auto make = [&](const auto& found, std::uint32_t components, std::string_view what, auto& plane) -> Result<> {
-        if (auto checked = check(*found, components, what); !checked) return checked;
+        DARKROOM_TRY(check(*found, components, what));
         plane.emplace(frame_.color.width, frame_.color.height);
         add_place(*found, components, plane->values);
         return {};
     };
     if (found_.reactive && options_.has_reactive)
-        if (auto done = make(found_.reactive, 1, "the reactive mask", frame_.reactive); !done) return done;
+        DARKROOM_TRY(make(found_.reactive, 1, "the reactive mask", frame_.reactive));
     // If colours are converted into ours, the space of this layer is not known.
     if (!found_.transparency || !options_.has_transparency || to_rec709_ || options_.input_chain) return {};
     return make(found_.transparency, 3, "the colour before transparency", frame_.transparency);
@@ -403,14 +403,13 @@ Result<> FrameReader::read_camera_of_file() {
         }
     }
     if (!options_.camera_file.empty()) {
-        auto given = read_camera(options_.camera_file);
-        if (!given) return failure(std::move(given));
+        DARKROOM_TRY_VALUE(auto given, read_camera(options_.camera_file));
         forget();
-        if (given->world_to_camera) camera.world_to_camera = given->world_to_camera;
-        camera.is_z_up = given->is_z_up;
-        if (given->projection || given->vertical_field_of_view) {
-            camera.projection = given->projection;
-            camera.vertical_field_of_view = given->vertical_field_of_view;
+        if (given.world_to_camera) camera.world_to_camera = given.world_to_camera;
+        camera.is_z_up = given.is_z_up;
+        if (given.projection || given.vertical_field_of_view) {
+            camera.projection = given.projection;
+            camera.vertical_field_of_view = given.vertical_field_of_view;
         }
     }
     if (options_.vertical_field_of_view) {
@@ -446,9 +445,7 @@ void FrameReader::read_time_of_file() {
 Result<FrameFile> FrameReader::read() {
     frame_.kind = decoder_.kind();
     frame_.channels = channel_names(decoder_.parts());
-    auto found = find_channels(decoder_.parts(), options_.names, options_.view);
-    if (!found) return failure(std::move(found));
-    found_ = std::move(*found);
+    DARKROOM_TRY_VALUE(found_, find_channels(decoder_.parts(), options_.names, options_.view));
     if (options_.view.empty() && found_.views.size() > 1)
         frame_.warnings.push_back(fmt::format("has the views {}: {} is developed, --eye says which",
                                               fmt::join(found_.views, ", "), found_.view));
@@ -461,23 +458,22 @@ Result<FrameFile> FrameReader::read() {
                         one_printable_line(fmt::format("{}", fmt::join(found_.other_colors, ", ")))));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
     frame_.attributes = decoder_.attributes(found_.color.part);
-    if (options_.keeps_overscan)
-        if (auto done = keep_overscan(); !done) return failure(std::move(done));
-    if (auto done = make_color(); !done) return failure(std::move(done));
-    if (auto done = make_depth(); !done) return failure(std::move(done));
-    if (auto done = make_normals(); !done) return failure(std::move(done));
-    if (auto done = make_velocity(); !done) return failure(std::move(done));
-    if (auto done = make_masks(); !done) return failure(std::move(done));
-    if (auto done = read_layers(decoder_, places_); !done) return failure(std::move(done));
+    if (options_.keeps_overscan) DARKROOM_TRY(keep_overscan());
+    DARKROOM_TRY(make_color());
+    DARKROOM_TRY(make_depth());
+    DARKROOM_TRY(make_normals());
+    DARKROOM_TRY(make_velocity());
+    DARKROOM_TRY(make_masks());
+    DARKROOM_TRY(read_layers(decoder_, places_));
     finish_color();
     finish_depth();
     finish_normals();
     finish_velocity();
     finish_masks();
-    if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
+    DARKROOM_TRY(read_camera_of_file());
     settle_world(frame_, options_, vray_normals_.has_value());
     read_time_of_file();
-    if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
+    DARKROOM_TRY(read_lights(decoder_, found_.color.part, options_, frame_));
     const std::vector<float> aspect = decoder_.numbers(found_.color.part, "PixelAspectRatio");
     if (aspect.size() == 1 && std::abs(aspect[0] - 1) > 1e-3f)
         frame_.warnings.push_back(fmt::format("pixels are {:g} times as wide as high: taken as square", aspect[0]));
@@ -494,9 +490,8 @@ Result<FrameFile> FrameReader::read() {
 }  // namespace
 
 Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options) {
-    auto decoder = Decoder::open(path, options.max_threads, DecodingPlace::FramesHere);
-    if (!decoder) return failure(std::move(decoder));
-    auto frame = FrameReader(*decoder, options).read();
+    DARKROOM_TRY_VALUE(auto decoder, Decoder::open(path, options.max_threads, DecodingPlace::FramesHere));
+    auto frame = FrameReader(decoder, options).read();
     const std::string place = path.string() + ": ";
     if (!frame && !frame.error().text.starts_with(place) &&
         (options.camera_file.empty() || !frame.error().text.starts_with(options.camera_file.string())))

@@ -56,9 +56,8 @@ Result<FrameSet> FrameSet::parse(std::string_view text) {
     FrameSet out;
     for (;;) {
         const std::size_t comma = text.find(',');
-        const Result<Range> range = parse_range(text.substr(0, comma));
-        if (!range) return failure(range.error());
-        out.ranges_.push_back(*range);
+        DARKROOM_TRY_VALUE(const Range range, parse_range(text.substr(0, comma)));
+        out.ranges_.push_back(range);
         if (out.ranges_.size() > max_ranges) return user_error(fmt::format("at most {} ranges", max_ranges));
         if (comma == std::string_view::npos) return out;
         text.remove_prefix(comma + 1);

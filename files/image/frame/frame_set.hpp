@@ -3,10 +3,11 @@
 // Which frames of a sequence are meant, as people write it: 12, 1-100, 1-100x2 (every second one), -10--5, and several
 // of these with commas between them.
 
-#include <darkroom/result.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

@@ -28,8 +28,7 @@ class Reader {
 
     Result<> run() {
         for (std::size_t part = 0; part < decoder_.parts().size(); ++part)
-            if (!is_shadow_part(decoder_.parts()[part]))
-                if (Result<> done = read(part); !done) return done;
+            if (!is_shadow_part(decoder_.parts()[part])) DARKROOM_TRY(read(part));
         return {};
     }
 
@@ -136,15 +135,14 @@ class Reader {
 }  // namespace
 
 Result<KeptLayers> read_kept_layers(const std::filesystem::path& path, const FrameOptions& options) {
-    Result<Decoder> decoder = Decoder::open(path, options.max_threads, DecodingPlace::FramesHere);
-    if (!decoder) return failure(std::move(decoder));
+    DARKROOM_TRY_VALUE(Decoder decoder, Decoder::open(path, options.max_threads, DecodingPlace::FramesHere));
     const auto refuse = [&](const Error& error) {
         return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});
     };
-    const Result<FrameChannels> found = find_channels(decoder->parts(), options.names, options.view);
+    const Result<FrameChannels> found = find_channels(decoder.parts(), options.names, options.view);
     if (!found) return refuse(found.error());
     KeptLayers layers;
-    if (Result<> done = Reader(*decoder, *found, options.is_depth_inverse, layers).run(); !done)
+    if (Result<> done = Reader(decoder, *found, options.is_depth_inverse, layers).run(); !done)
         return refuse(done.error());
     const auto is_red = [](const KeptLayers::Channel& channel) {
         const std::string name = lower(channel.name.substr(channel.name.rfind('.') + 1));
@@ -152,7 +150,7 @@ Result<KeptLayers> read_kept_layers(const std::filesystem::path& path, const Fra
     };
     if (std::ranges::any_of(layers.parts,
                             [&](const KeptLayers::Part& part) { return std::ranges::any_of(part.channels, is_red); }))
-        layers.primaries = decoder->primaries(found->color.part);
+        layers.primaries = decoder.primaries(found->color.part);
     return layers;
 }
 

@@ -53,9 +53,8 @@ void SampleRange::add(const SampleRange& other) {
 }
 
 Result<LayerFile> LayerFile::open(const std::filesystem::path& path) {
-    Result<Decoder> decoder = Decoder::open(path);
-    if (!decoder) return failure(std::move(decoder));
-    LayerFile file(path.string(), std::move(*decoder));
+    DARKROOM_TRY_VALUE(Decoder decoder, Decoder::open(path));
+    LayerFile file(path.string(), std::move(decoder));
     file.list_layers();
     return file;
 }
@@ -158,7 +157,7 @@ Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
                     to[(x + part.x) * count + c] = in[x * read_count + (layer.channels[c] - first)];
         }
     };
-    if (Result<> done = decoder_.read(layer.part, first, read_count, place); !done) return failure(std::move(done));
+    DARKROOM_TRY(decoder_.read(layer.part, first, read_count, place));
     return out;
 }
 
@@ -168,7 +167,7 @@ Result<std::vector<SampleRange>> LayerFile::ranges(std::size_t part) {
     const auto add = [&](std::uint32_t, std::uint32_t, std::span<const float> samples) {
         for (std::uint32_t c = 0; c < count; ++c) ranges[c].add(samples.subspan(c), count);
     };
-    if (Result<> done = decoder_.read(part, 0, count, add); !done) return failure(std::move(done));
+    DARKROOM_TRY(decoder_.read(part, 0, count, add));
     return ranges;
 }
 

@@ -42,7 +42,7 @@ Result<> read_inside(Decoder& decoder, std::size_t number, std::vector<SamplePla
                                    : decoder.band_rows(number, part.width * part.channels.size() * sizeof(float));
     for (std::uint32_t row = 0; row < part.height; row += band) {
         const std::uint32_t rows = std::min(band, part.height - row);
-        if (auto done = decoder.read_rows(number, row, rows, places); !done) return done;
+        DARKROOM_TRY(decoder.read_rows(number, row, rows, places));
         for (SamplePlace& place : places) place.first += static_cast<std::ptrdiff_t>(rows) * place.row_bytes;
     }
     return {};
@@ -64,7 +64,7 @@ Result<> read_cropped(Decoder& decoder, std::size_t number, std::span<const Samp
     }
     for (std::uint32_t row = 0; row < part.height; row += band) {
         const std::uint32_t rows = std::min(band, part.height - row);
-        if (auto done = decoder.read_rows(number, row, rows, into); !done) return done;
+        DARKROOM_TRY(decoder.read_rows(number, row, rows, into));
         for (std::size_t i = 0; i < places.size(); ++i)
             for (std::uint32_t r = 0; r < rows; ++r) {
                 const std::int64_t y = std::int64_t{row} + r + part.y;
@@ -129,9 +129,8 @@ Result<> read_layers(Decoder& decoder, std::span<const LayerPlace> layers) {
     }
     for (const auto& [part, of_part] : readings)
         for (const std::vector<SamplePlace>& places : of_part) {
-            auto done = is_inside_display(decoder.parts()[part]) ? read_inside(decoder, part, places)
-                                                                 : read_cropped(decoder, part, places);
-            if (!done) return done;
+            DARKROOM_TRY(is_inside_display(decoder.parts()[part]) ? read_inside(decoder, part, places)
+                                                                  : read_cropped(decoder, part, places));
         }
     for (const Repeat& what : repeats) {
         const FilePart& part = decoder.parts()[what.layer->source.part];
@@ -153,11 +152,9 @@ void widen(FrameFile& frame) {
 }
 
 Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names) {
-    const auto decoder = Decoder::open(path);
-    if (!decoder) return failure(decoder.error());
-    const auto found = find_channels(decoder->parts(), names);
-    if (!found) return failure(found.error());
-    const std::optional<double> time = decoder->number(found->color.part, "darkroom:time");
+    DARKROOM_TRY_VALUE(const auto decoder, Decoder::open(path));
+    DARKROOM_TRY_VALUE(const auto found, find_channels(decoder.parts(), names));
+    const std::optional<double> time = decoder.number(found.color.part, "darkroom:time");
     return time && std::isfinite(*time) ? time : std::nullopt;
 }
 

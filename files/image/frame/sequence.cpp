@@ -146,8 +146,7 @@ Result<> expand(std::string input, std::vector<Found>& files) {
         files.push_back({std::move(input), std::nullopt});
         return {};
     }
-    const Result<std::optional<FrameSet>> frames = take_frames(input);
-    if (!frames) return failure(frames.error());
+    DARKROOM_TRY_VALUE(const std::optional<FrameSet> frames, take_frames(input));
     const fs::path path(input);
     const Pattern pattern = *parse(path.filename().string());
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -158,7 +157,7 @@ Result<> expand(std::string input, std::vector<Found>& files) {
         if (!name.starts_with(pattern.before) || !name.ends_with(pattern.after)) continue;
         const auto number = whole_number(std::string_view(name).substr(
             pattern.before.size(), name.size() - pattern.before.size() - pattern.after.size()));
-        if (!number || (*frames && !(*frames)->contains(*number))) continue;
+        if (!number || (frames && !frames->contains(*number))) continue;
         const std::vector<std::string> names = pattern.names(*number);
         if (std::ranges::find(names, name) == names.end()) continue;
         found.emplace_back(*number, path.has_parent_path() ? folder / name : fs::path(name));
@@ -205,8 +204,7 @@ std::optional<long long> frame_number(const fs::path& path) {
 
 Result<std::vector<NumberedFile>> expand_inputs(std::span<const std::string> inputs) {
     std::vector<Found> files;
-    for (const std::string& input : inputs)
-        if (auto expanded = expand(input, files); !expanded) return failure(std::move(expanded));
+    for (const std::string& input : inputs) DARKROOM_TRY(expand(input, files));
     number_by_names(files);
     std::vector<NumberedFile> out;
     std::set<long long> seen;

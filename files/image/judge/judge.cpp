@@ -55,8 +55,7 @@ double ErrorSum::psnr() const {
 }
 
 Result<> Judge::add(long long number, const ShownCodes& truth, const ShownCodes& test, const RegionMap& map) {
-    const Result<FlipErrors> flip_errors = flip(picture_of(truth), picture_of(test));
-    if (!flip_errors) return failure(flip_errors.error());
+    DARKROOM_TRY_VALUE(const FlipErrors flip_errors, flip(picture_of(truth), picture_of(test)));
     std::vector<float> error(truth.values.size());
     for (std::size_t i = 0; i < error.size(); ++i) error[i] = test.values[i] - truth.values[i];
     ErrorSum of_frame;
@@ -78,8 +77,8 @@ Result<> Judge::add(long long number, const ShownCodes& truth, const ShownCodes&
         if (map.age(pixel) < max_recovery_frames) verdict_.recovery[map.age(pixel)].add(square, 3);
     }
     verdict_.error.add(of_frame.squares, of_frame.samples);
-    verdict_.frames.push_back({.number = number, .psnr = of_frame.psnr(), .flip = flip_errors->mean});
-    flips_ += flip_errors->mean;
+    verdict_.frames.push_back({.number = number, .psnr = of_frame.psnr(), .flip = flip_errors.mean});
+    flips_ += flip_errors.mean;
     verdict_.flip_mean = flips_ / static_cast<double>(verdict_.frames.size());
     error_before_ = std::move(error);
     map_before_ = map;

@@ -27,23 +27,20 @@ Picture picture_of(const LayerSamples& samples, const FilePart& part) {
 }  // namespace
 
 Result<ComparablePicture> read_comparable(const std::filesystem::path& path) {
-    Result<LayerFile> file = LayerFile::open(path);
-    if (!file) return failure(std::move(file));
-    return read_comparable(*file);
+    DARKROOM_TRY_VALUE(LayerFile file, LayerFile::open(path));
+    return read_comparable(file);
 }
 
 Result<ComparablePicture> read_comparable(LayerFile& file) {
-    const Result<FileLayer> layer = file.find("color");
-    if (!layer) return failure(layer.error());
-    const Result<LayerSamples> samples = file.read(*layer);
-    if (!samples) return failure(samples.error());
-    const FilePart& part = file.decoder().parts()[layer->part];
-    ComparablePicture out{.picture = picture_of(*samples, part)};
-    const SampleKind kind = part.kinds[layer->channels.front()];
+    DARKROOM_TRY_VALUE(const FileLayer layer, file.find("color"));
+    DARKROOM_TRY_VALUE(const LayerSamples samples, file.read(layer));
+    const FilePart& part = file.decoder().parts()[layer.part];
+    ComparablePicture out{.picture = picture_of(samples, part)};
+    const SampleKind kind = part.kinds[layer.channels.front()];
     if (kind != SampleKind::Half && kind != SampleKind::Float) return out;
     out.encoding = PictureEncoding::SceneLinear;
-    const std::optional<Chromaticities> primaries = file.decoder().primaries(layer->part);
-    if (!primaries || samples->channels < 3) return out;
+    const std::optional<Chromaticities> primaries = file.decoder().primaries(layer.part);
+    if (!primaries || samples.channels < 3) return out;
     const std::optional<ColorMatrix> matrix = to_rec709(*primaries);
     if (matrix && *matrix != ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) convert(out.picture, *matrix);
     return out;

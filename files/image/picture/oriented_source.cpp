@@ -85,8 +85,7 @@ class OrientedSource final : public PictureSource {
                   std::span<const SamplePlace> places) override {
         const bool is_kept =
             kind_ == places.front().kind && std::ranges::equal(channels_, places, {}, {}, &SamplePlace::channel);
-        if (!is_kept)
-            if (auto done = decode(places); !done) return done;
+        if (!is_kept) DARKROOM_TRY(decode(places));
         const FilePart& stored = stored_->parts()[0];
         const std::size_t size = size_of(kind_);
         for (std::uint32_t y = 0; y < rows; ++y)
@@ -159,11 +158,9 @@ Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, cons
 }
 
 Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
-    Result<OpenedSource> opened = open_source(bytes, max_threads, place);
-    if (!opened) return opened;
-    const Result<int> orientation = orientation_of(opened->kind, bytes, *opened->source);
-    if (!orientation) return failure(orientation.error());
-    if (*orientation != 1) opened->source = std::make_unique<OrientedSource>(std::move(opened->source), *orientation);
+    DARKROOM_TRY_VALUE(OpenedSource opened, open_source(bytes, max_threads, place));
+    DARKROOM_TRY_VALUE(const int orientation, orientation_of(opened.kind, bytes, *opened.source));
+    if (orientation != 1) opened.source = std::make_unique<OrientedSource>(std::move(opened.source), orientation);
     return opened;
 }
 

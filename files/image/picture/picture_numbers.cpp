@@ -14,11 +14,9 @@ namespace darkroom {
 namespace {
 
 Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(const FilePart&)) {
-    const Result<OpenedSource> opened = open_upright(bytes);
-    if (!opened) return failure(opened.error());
-    const FilePart& part = opened->source->parts().front();
-    if (check != nullptr)
-        if (Result<> ok = check(part); !ok) return failure(std::move(ok));
+    DARKROOM_TRY_VALUE(const OpenedSource opened, open_upright(bytes));
+    const FilePart& part = opened.source->parts().front();
+    if (check != nullptr) DARKROOM_TRY(check(part));
     ResourceImage image{part.width, part.height, {}};
     image.rgba.assign(std::size_t{image.width} * image.height * 4, 1.0f);
 
@@ -31,7 +29,7 @@ Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(c
                           .first = reinterpret_cast<std::byte*>(image.rgba.data() + i),
                           .pixel_bytes = 4 * sizeof(float),
                           .row_bytes = static_cast<std::ptrdiff_t>(std::size_t{image.width} * 4 * sizeof(float))});
-    if (Result<> done = opened->source->read_rows(0, 0, part.height, places); !done) return failure(std::move(done));
+    DARKROOM_TRY(opened.source->read_rows(0, 0, part.height, places));
     for (float& value : image.rgba)
         if (!std::isfinite(value)) value = 0;
     const bool is_light = part.kinds[0] == SampleKind::Half || part.kinds[0] == SampleKind::Float;
@@ -42,9 +40,8 @@ Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(c
 }  // namespace
 
 Result<ResourceImage> read_numbers(const std::filesystem::path& path, Result<> (*check)(const FilePart&)) {
-    const Result<std::vector<std::byte>> bytes = read_image_file(path);
-    if (!bytes) return failure(bytes.error());
-    Result<ResourceImage> image = read(*bytes, check);
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, read_image_file(path));
+    Result<ResourceImage> image = read(bytes, check);
     if (!image)
         return failure(Error{image.error().fault, fmt::format("{}: {}", printable(path.string()), image.error().text)});
     return image;

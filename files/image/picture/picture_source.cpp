@@ -114,19 +114,15 @@ Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path
 
 Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
     if (!is_decoding_allowed()) return user_error("decoding of pictures is switched off in this process");
-    const Result<FileKind> kind = kind_of_file(bytes);
-    if (!kind) return failure(kind.error());
-    auto cleaned = check_structure(*kind, bytes);
-    if (!cleaned) return failure(std::move(cleaned));
-    const std::span<const std::byte> seen = cleaned->empty() ? bytes : std::span<const std::byte>(*cleaned);
-    auto source = *kind == FileKind::OpenExr && place == DecodingPlace::FramesHere
-                      ? open_frame(seen, max_threads)
-                      : ConfinedSource::open(*kind, seen, max_threads);
-    if (!source) return failure(std::move(source));
-    (*source)->keep(std::move(*cleaned));
-    for (const FilePart& part : (*source)->parts())
-        if (auto checked = check_size(*kind, part, bytes.size()); !checked) return failure(std::move(checked));
-    return OpenedSource{*kind, std::move(*source)};
+    DARKROOM_TRY_VALUE(const FileKind kind, kind_of_file(bytes));
+    DARKROOM_TRY_VALUE(auto cleaned, check_structure(kind, bytes));
+    const std::span<const std::byte> seen = cleaned.empty() ? bytes : std::span<const std::byte>(cleaned);
+    DARKROOM_TRY_VALUE(auto source, kind == FileKind::OpenExr && place == DecodingPlace::FramesHere
+                                        ? open_frame(seen, max_threads)
+                                        : ConfinedSource::open(kind, seen, max_threads));
+    source->keep(std::move(cleaned));
+    for (const FilePart& part : source->parts()) DARKROOM_TRY(check_size(kind, part, bytes.size()));
+    return OpenedSource{kind, std::move(source)};
 }
 
 }  // namespace darkroom

@@ -13,12 +13,10 @@ namespace darkroom {
 namespace {
 
 Result<Picture> filtered(Picture& picture, std::uint32_t width, std::uint32_t height) {
-    const Result<const Codecs*> library = codecs();
-    if (!library) return failure(library.error());
+    DARKROOM_TRY_VALUE(const Codecs* const library, codecs());
     Picture out(width, height);
-    auto done = (*library)->resample({picture.width, picture.height, picture.pixels.data()},
-                                     {width, height, out.pixels.data()});
-    if (!done) return failure(std::move(done));
+    DARKROOM_TRY(
+        library->resample({picture.width, picture.height, picture.pixels.data()}, {width, height, out.pixels.data()}));
     return out;
 }
 
@@ -46,10 +44,9 @@ Result<Plane<3>> filtered_plane(const Plane<3>& plane, std::uint32_t width, std:
     };
     Picture picture(plane.width, plane.height);
     copy(plane.values, 3, picture.pixels, 4);
-    const Result<Picture> sized = filtered(picture, width, height);
-    if (!sized) return failure(sized.error());
+    DARKROOM_TRY_VALUE(const Picture sized, filtered(picture, width, height));
     Plane<3> out(width, height);
-    copy(sized->pixels, 4, out.values, 3);
+    copy(sized.pixels, 4, out.values, 3);
     return out;
 }
 
@@ -116,14 +113,10 @@ Result<FrameFile> resize(FrameFile frame, const NewSize& asked_for) {
     const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
     if (width == old_width && height == old_height) return frame;
     widen(frame);
-    Result<Picture> color = filtered(frame.color, width, height);
-    if (!color) return failure(std::move(color));
-    frame.color = std::move(*color);
+    DARKROOM_TRY_VALUE(frame.color, filtered(frame.color, width, height));
     if (frame.reactive) frame.reactive = nearest_pixels(*frame.reactive, width, height);
     if (frame.transparency) {
-        Result<Plane<3>> before = filtered_plane(*frame.transparency, width, height);
-        if (!before) return failure(std::move(before));
-        frame.transparency = std::move(*before);
+        DARKROOM_TRY_VALUE(frame.transparency, filtered_plane(*frame.transparency, width, height));
     }
     if (frame.depth) frame.depth = nearest_pixels(*frame.depth, width, height);
     if (frame.normals) frame.normals = nearest_pixels(*frame.normals, width, height);

@@ -3,9 +3,10 @@
 // The interface from a picture's file.
 
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

@@ -151,17 +151,16 @@ Result<FileKind> file_kind(const std::filesystem::path& path) {
 }
 
 Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options) {
-    const auto kind = file_kind(path);
-    if (!kind) return failure(kind.error());
-    const Format format = format_of(*kind);
+    DARKROOM_TRY_VALUE(const auto kind, file_kind(path));
+    const Format format = format_of(kind);
     if (options.alpha && !format.has_alpha)
-        return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
-    if (auto checked = check_coding(path, *kind, options); !checked) return failure(std::move(checked));
+        return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(kind)));
+    DARKROOM_TRY(check_coding(path, kind, options));
     SampleKind samples = options.samples.value_or(format.samples.front());
     // Eight bits show steps where the codes reach further than sRGB's.
-    if (!options.samples && *kind == FileKind::Png && options.space && options.space->integers != srgb_color)
+    if (!options.samples && kind == FileKind::Png && options.space && options.space->integers != srgb_color)
         samples = SampleKind::Integer16;
-    if (Result<> done = check_space(path, *kind, samples, options); !done) return failure(std::move(done));
+    DARKROOM_TRY(check_space(path, kind, samples, options));
     if (options.view && !is_integer(samples))
         return user_error(fmt::format("{}: {} samples hold light, not a view of a display; .png .jpg .tif hold one",
                                       path.string(), name_of(samples)));
@@ -170,7 +169,7 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
     for (const SampleKind known : format.samples)
         allowed += (allowed.empty() ? "" : ", ") + std::string(name_of(known));
     return user_error(
-        fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), name_of(*kind), allowed));
+        fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), name_of(kind), allowed));
 }
 
 namespace {
@@ -190,9 +189,8 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
             if (!options.compression.empty()) png.level = std::stoi(options.compression);
             return encode_png(png);
         }
-        const Result<const Codecs*> others = codecs();
-        if (!others) return failure(others.error());
-        return (*others)->encode(desc);
+        DARKROOM_TRY_VALUE(const Codecs* const others, codecs());
+        return others->encode(desc);
     };
     const auto bytes = encode();
     if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
@@ -282,18 +280,17 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
 /// What the path and the options ask for, checked.
 Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                             const WriteOptions& options) {
-    const auto samples = sample_kind(path, options);
-    if (!samples) return failure(samples.error());
+    DARKROOM_TRY_VALUE(const auto samples, sample_kind(path, options));
     const FileKind kind = *file_kind(path);
-    if (auto checked = check_size(path, kind, width, height); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_size(path, kind, width, height));
     return EncodeDesc{.file = kind,
-                      .kind = *samples,
+                      .kind = samples,
                       .width = width,
                       .height = height,
                       .channels = options.alpha ? 4U : 3U,
                       .quality = options.quality,
                       .chroma = options.chroma,
-                      .is_associated = options.alpha && !is_integer(*samples),
+                      .is_associated = options.alpha && !is_integer(samples),
                       .compression = options.compression};
 }
 
@@ -312,30 +309,29 @@ std::uint64_t clamped_by_compression(const std::filesystem::path& path, const Pi
 
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
     DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);
-    Result<EncodeDesc> desc = describe(path, picture.width, picture.height, options);
-    if (!desc) return failure(std::move(desc));
-    if (desc->file == FileKind::OpenExr) return write_floats(path, picture, desc->kind, options);
+    DARKROOM_TRY_VALUE(EncodeDesc desc, describe(path, picture.width, picture.height, options));
+    if (desc.file == FileKind::OpenExr) return write_floats(path, picture, desc.kind, options);
     const auto write = [&](const auto& samples) {
-        desc->samples = samples.data();
-        return write_samples(path, *desc, options);
+        desc.samples = samples.data();
+        return write_samples(path, desc, options);
     };
     const auto write_integers = [&](const Picture& encoded) {
-        return desc->kind == SampleKind::Integer8 ? write(integers<std::uint8_t>(encoded, desc->channels))
-                                                  : write(integers<std::uint16_t>(encoded, desc->channels));
+        return desc.kind == SampleKind::Integer8 ? write(integers<std::uint8_t>(encoded, desc.channels))
+                                                 : write(integers<std::uint16_t>(encoded, desc.channels));
     };
-    const bool makes_alpha = options.has_alpha_of_glow && is_integer(desc->kind);
+    const bool makes_alpha = options.has_alpha_of_glow && is_integer(desc.kind);
     if (options.view || makes_alpha) {
         Picture made = picture;
         if (options.view) apply(*options.view, made);
         if (makes_alpha) make_alpha_of_glow(made.pixels);
         return write_integers(made);
     }
-    if (is_integer(desc->kind)) return write_integers(picture);
+    if (is_integer(desc.kind)) return write_integers(picture);
     // Radiance: no negative values, and a shared exponent of at most 2^127.
     constexpr float largest_radiance = 1.7e38f;
     constexpr float largest_float = std::numeric_limits<float>::max();
-    const bool is_radiance = desc->file == FileKind::Radiance;
-    return write(floats(picture, desc->channels, is_radiance ? 0 : -largest_float,
+    const bool is_radiance = desc.file == FileKind::Radiance;
+    return write(floats(picture, desc.channels, is_radiance ? 0 : -largest_float,
                         is_radiance ? largest_radiance : largest_float));
 }
 
@@ -344,14 +340,13 @@ Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std
     DARKROOM_ASSERT(rgba.size() == std::size_t{width} * height * 4);
     WriteOptions bytes = options;
     bytes.samples = SampleKind::Integer8;
-    Result<EncodeDesc> desc = describe(path, width, height, bytes);
-    if (!desc) return failure(std::move(desc));
-    desc->samples = rgba.data();
-    if (options.alpha) return write_samples(path, *desc, options);
+    DARKROOM_TRY_VALUE(EncodeDesc desc, describe(path, width, height, bytes));
+    desc.samples = rgba.data();
+    if (options.alpha) return write_samples(path, desc, options);
     std::vector<std::uint8_t> opaque(rgba.size() / 4 * 3);
     for (std::size_t i = 0; i < rgba.size() / 4; ++i) std::copy_n(&rgba[4 * i], 3, &opaque[3 * i]);
-    desc->samples = opaque.data();
-    return write_samples(path, *desc, options);
+    desc.samples = opaque.data();
+    return write_samples(path, desc, options);
 }
 
 }  // namespace darkroom

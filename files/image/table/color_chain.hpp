@@ -5,10 +5,11 @@
 
 #include <array>
 #include <darkroom/resource.hpp>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>
+
+#include "core/try.hpp"
 
 namespace darkroom {
 

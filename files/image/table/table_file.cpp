@@ -54,7 +54,7 @@ Result<FoundTable> read_chain(const fs::path& path, const std::string& extension
         return failure(Error{error.fault, fmt::format("{}: {}", shown, error.text)});
     };
     // What OpenColorIO makes of them it bounds itself: 129 a side of a cube, 2^20 entries of a 1D table.
-    if (const auto bytes = read_file(path, {.max_size = max_chain_file}); !bytes) return failure(bytes.error());
+    DARKROOM_TRY(read_file(path, {.max_size = max_chain_file}));
     const Result<const ColorChains*> chains = color_chains();
     if (!chains) return refuse(chains.error());
     const Result<std::unique_ptr<ColorChain>> chain = (*chains)->open(path);
@@ -76,9 +76,8 @@ Result<FoundTable> read_picture_table(const fs::path& path) {
         const Result<std::uint32_t> edge = table_image_edge(part.width, part.height);
         return edge ? Result<>() : failure(edge.error());
     };
-    const Result<ResourceImage> image = read_numbers(path, check);
-    if (!image) return failure(image.error());
-    Result<ColorTable> table = table_of_image(*image);
+    DARKROOM_TRY_VALUE(const ResourceImage image, read_numbers(path, check));
+    Result<ColorTable> table = table_of_image(image);
     if (!table)
         return failure(Error{table.error().fault, fmt::format("{}: {}", printable(path.string()), table.error().text)});
     return FoundTable{.file = {.table = std::move(*table)}, .format = "a picture"};
@@ -100,9 +99,8 @@ bool is_table_name(const fs::path& path) {
 Result<FoundTable> read_table_file(const fs::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".cube") {
-        Result<TableFile> file = read_cube(path);
-        if (!file) return failure(std::move(file));
-        return FoundTable{.file = std::move(*file), .format = extension};
+        DARKROOM_TRY_VALUE(TableFile file, read_cube(path));
+        return FoundTable{.file = std::move(file), .format = extension};
     }
     if (is_table_name(path)) return read_chain(path, extension);
     return read_picture_table(path);

@@ -89,8 +89,7 @@ Result<WebpPicture> check_webp(Bytes file) {
         if (size > left)
             return user_error(
                 fmt::format("truncated: chunk {} has {} bytes of {}", one_printable_line(name), left, size));
-        if (auto looked = look_at(name, file.subspan(at + chunk_head, size), found); !looked)
-            return failure(std::move(looked));
+        DARKROOM_TRY(look_at(name, file.subspan(at + chunk_head, size), found));
         at += chunk_head + size + size % 2;
     }
     if (!found.picture) return user_error("has no picture");
@@ -100,8 +99,7 @@ Result<WebpPicture> check_webp(Bytes file) {
     if (found.canvas && *found.canvas != extent)
         return user_error(fmt::format("the picture is {}x{} on a canvas of {}x{}", extent.width, extent.height,
                                       found.canvas->width, found.canvas->height));
-    if (auto checked = check_decoded_size(std::uint64_t{4} * extent.width * extent.height, file.size()); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(check_decoded_size(std::uint64_t{4} * extent.width * extent.height, file.size()));
     return WebpPicture{extent.width, extent.height, file, found.profile, found.exif};
 }
 

@@ -45,10 +45,9 @@ class Definitions {
         const LookEntry& entry = *placed.entry;
         for (const ParamInfo& row : entry.effect->parameters.rows)
             if (placed.has_values && row.kind == Kind::Resource && entry.words[row.word] != 0)
-                if (Result<> done = define(resource_of(entry, row), row.name); !done) return done;
+                DARKROOM_TRY(define(resource_of(entry, row), row.name));
         for (std::size_t i = 0; i < wires.size(); ++i)
-            if (placed.ends[i].picture != nullptr)
-                if (Result<> done = define(placed.ends[i].picture, wires[i].key); !done) return done;
+            if (placed.ends[i].picture != nullptr) DARKROOM_TRY(define(placed.ends[i].picture, wires[i].key));
         return {};
     }
     Resource number_of(const LookResource& resource) const { return used_.at(resource.data.get()); }
@@ -82,9 +81,7 @@ class Follower {
         : was_(was), is_(is), composer_(composer), definitions_(composer), modulation_(was, composer) {}
 
     Result<Followed> run(const ApplyOptions& options) {
-        Result<std::vector<PlacedEntry>> placed = stack_of(is_, options);
-        if (!placed) return failure(std::move(placed));
-        placed_ = std::move(*placed);
+        DARKROOM_TRY_VALUE(placed_, stack_of(is_, options));
         find_handles();
         for (const PlacedEntry& one : placed_)
             if (Result<> done = definitions_.define(one); !done) {
@@ -93,14 +90,11 @@ class Follower {
                     Error{done.error().fault, fmt::format("{}: {}: {}", is_.shown_name, one.name, done.error().text)});
             }
         remove_rest();
-        for (std::size_t i = 0; i < placed_.size(); ++i)
-            if (Result<> done = place(i); !done) return failure(std::move(done));
-        for (std::size_t i = 0; i < placed_.size(); ++i)
-            if (Result<> done = wire(i); !done) return failure(std::move(done));
+        for (std::size_t i = 0; i < placed_.size(); ++i) DARKROOM_TRY(place(i));
+        for (std::size_t i = 0; i < placed_.size(); ++i) DARKROOM_TRY(wire(i));
         definitions_.forget_unused();
-        const Result<bool> is_moved = modulation_.follow(is_);
-        if (!is_moved) return failure(is_moved.error());
-        return Followed{needs_compile_ || *is_moved};
+        DARKROOM_TRY_VALUE(const bool is_moved, modulation_.follow(is_));
+        return Followed{needs_compile_ || is_moved};
     }
 
   private:
@@ -154,14 +148,12 @@ class Follower {
                 handle = composer_.add(effect, words.data(), placed.desc);
                 return handle.is_given() ? Result<>{} : machine_error("out of memory", ErrorCode::OutOfMemory);
             }
-            const Result<Handle> made = composer_.insert(at, effect, words.data(), placed.desc);
-            if (!made) return failure(made.error());
-            handle = *made;
+            DARKROOM_TRY_VALUE(handle, composer_.insert(at, effect, words.data(), placed.desc));
             return {};
         }
         if (handle != at) {
             needs_compile_ = true;
-            if (Result<> done = composer_.move(handle, at); !done) return done;
+            DARKROOM_TRY(composer_.move(handle, at));
         }
         if (composer_.info(handle) != &effect) {
             needs_compile_ = true;
@@ -176,9 +168,9 @@ class Follower {
             const auto own = words.subspan(row.word, row.words);
             if (std::ranges::equal(own, composer_.words(handle).subspan(row.word, row.words))) continue;
             needs_compile_ |= row.is_at_compile;
-            if (Result<> done = composer_.set(handle, row.name, own); !done) return done;
+            DARKROOM_TRY(composer_.set(handle, row.name, own));
         }
-        if (Result<> done = composer_.set_enabled(handle, placed.desc.enabled); !done) return done;
+        DARKROOM_TRY(composer_.set_enabled(handle, placed.desc.enabled));
         // What has passes is merged with its input only if it was not to replace it when the stack was compiled: what
         // is refused here, is wired anew.
         needs_compile_ |= composer_.desc(handle)->opacity == 1 && placed.desc.opacity != 1 && effect.build;

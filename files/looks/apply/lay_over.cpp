@@ -21,7 +21,7 @@ class Layer {
     Result<> lay() {
         for (const LookEntry& entry : layer_.entries)
             if (std::ranges::find(layer_.written, entry.effect, &WrittenValue::effect) != layer_.written.end())
-                if (Result<> done = lay(entry); !done) return done;
+                DARKROOM_TRY(lay(entry));
         return {};
     }
 
@@ -31,7 +31,7 @@ class Layer {
         const auto found = std::ranges::find_if(look_.entries, is_same);
         if (found != look_.entries.end()) return set(*found, from);
         LookEntry made = from;
-        if (Result<> done = set(made, from); !done) return done;
+        DARKROOM_TRY(set(made, from));
         return place_entry(look_, std::move(made));
     }
 
@@ -50,7 +50,7 @@ class Layer {
             }
             const LookResource* const file = resource_of(from, *row);
             const std::string name = file == nullptr ? "" : std::filesystem::absolute(folder_ / file->file).string();
-            if (Result<> done = files_.put(to, *row, name); !done) return done;
+            DARKROOM_TRY(files_.put(to, *row, name));
         }
         const std::string conflict = conflict_of(to);
         return conflict.empty() ? Result<>{} : user_error(fmt::format("over {}: {}", look_.shown_name, conflict));
@@ -67,14 +67,12 @@ class Layer {
 Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptions& options) try {
     LookOptions own = options;
     own.allows_modulation = false;
-    const Result<Look> layer = read_look(file, own);
-    if (!layer) return failure(layer.error());
-    if (layer->written.empty() || layer->ui)
+    DARKROOM_TRY_VALUE(const Look layer, read_look(file, own));
+    if (layer.written.empty() || layer.ui)
         return user_error(fmt::format("{}: a look that is laid over another has values in [post_process], and no [ui]",
-                                      layer->shown_name));
-    Result<> done = Layer(look, *layer, file.parent_path(), options).lay();
-    return done ? done
-                : failure(Error{done.error().fault, fmt::format("{}: {}", layer->shown_name, done.error().text)});
+                                      layer.shown_name));
+    Result<> done = Layer(look, layer, file.parent_path(), options).lay();
+    return done ? done : failure(Error{done.error().fault, fmt::format("{}: {}", layer.shown_name, done.error().text)});
 } catch (...) {
     return caught("lay_over");
 }

@@ -31,7 +31,7 @@ Result<> ResourceFiles::put(LookEntry& entry, const ParamInfo& row, const std::s
 }
 
 Result<> ResourceFiles::put(LookEntry& entry, const WireInfo& wire, const std::string& name) {
-    if (Result<> done = put(entry, wire.key, is_file_name(name) ? name : std::string(), wire.use); !done) return done;
+    DARKROOM_TRY(put(entry, wire.key, is_file_name(name) ? name : std::string(), wire.use));
     entry.*wire.member = name;
     return {};
 }
@@ -39,9 +39,8 @@ Result<> ResourceFiles::put(LookEntry& entry, const WireInfo& wire, const std::s
 Result<> ResourceFiles::put(LookEntry& entry, std::string_view parameter, const std::string& file, FileUse use) {
     std::erase_if(entry.resources, [&](const LookResource& one) { return one.parameter == parameter; });
     if (!file.empty()) {
-        const auto loaded = load((folder_ / file).lexically_normal(), use);
-        if (!loaded) return failure(loaded.error());
-        entry.resources.push_back({std::string(parameter), file, *loaded});
+        DARKROOM_TRY_VALUE(const auto loaded, load((folder_ / file).lexically_normal(), use));
+        entry.resources.push_back({std::string(parameter), file, loaded});
     }
     for (const ParamInfo& row : entry.effect->parameters.rows) {
         if (row.kind != Kind::Resource) continue;
@@ -65,18 +64,16 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
             return user_error(fmt::format("{}: this program reads no pictures for looks", printable(path.string())));
         if (!options_.reads_tables)
             return user_error(fmt::format("{}: this program reads no tables for looks", printable(path.string())));
-        Result<TableFile> file = read_cube(path);
-        if (!file) return failure(std::move(file));
-        return ResourceData(std::move(file->table));
+        DARKROOM_TRY_VALUE(TableFile file, read_cube(path));
+        return ResourceData(std::move(file.table));
     };
-    Result<ResourceData> data = read();
-    if (!data) return failure(std::move(data));
-    numbers_ += count_of(*data);
+    DARKROOM_TRY_VALUE(ResourceData data, read());
+    numbers_ += count_of(data);
     if (numbers_ > options_.max_resource_numbers)
         return user_error(
             fmt::format("{}: with it, the look's tables and pictures hold {} numbers, at most {} are allowed",
                         printable(path.string()), numbers_, options_.max_resource_numbers));
-    return loaded_[{path, use}] = std::make_shared<const ResourceData>(std::move(*data));
+    return loaded_[{path, use}] = std::make_shared<const ResourceData>(std::move(data));
 }
 
 const LookResource* resource_of(const LookEntry& entry, const ParamInfo& row) {

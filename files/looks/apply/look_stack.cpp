@@ -65,8 +65,7 @@ class WireReader {
     }
 
     Result<> read(PlacedEntry& placed) {
-        for (std::size_t i = 0; i < wires.size(); ++i)
-            if (Result<> done = read(placed, wires[i], placed.ends[i]); !done) return done;
+        for (std::size_t i = 0; i < wires.size(); ++i) DARKROOM_TRY(read(placed, wires[i], placed.ends[i]));
         if (!placed.entry->output.empty()) made_.insert(placed.entry->output);
         return {};
     }
@@ -136,10 +135,10 @@ Result<std::vector<PlacedEntry>> stack_of(const Look& look, const ApplyOptions& 
                            .has_values = is_own};
         // Bloom reads the scene itself in the documented order, and in the other what exposure and air made of it.
         if (look.is_flat && !entry->is_of_ui && look.order == LookOrder::Documented) placed.desc.source = scene_color;
-        if (Result<> done = reader.read(placed); !done) return failure(std::move(done));
+        DARKROOM_TRY(reader.read(placed));
         out.push_back(std::move(placed));
     }
-    if (Result<> done = reader.check_previous(out); !done) return failure(std::move(done));
+    DARKROOM_TRY(reader.check_previous(out));
     return out;
 }
 

@@ -18,8 +18,7 @@ class Overrider {
     Overrider(Look& look, const LookOptions& options) : look_(look), files_({}, options) {}
 
     Result<> run(std::span<const LookOverride> overrides) {
-        for (const LookOverride& one : overrides)
-            if (Result<> done = set(one); !done) return done;
+        for (const LookOverride& one : overrides) DARKROOM_TRY(set(one));
         // A toggle that was typed counts, whatever an amount implies.
         for (const auto& [entry, on] : toggles_) {
             entry->state.enabled = on;
@@ -33,9 +32,8 @@ class Overrider {
   private:
     Result<> set(const LookOverride& one) {
         const std::string shown = printable(one.shown.empty() ? one.key : one.shown);
-        const Result<LookTarget> target = find_target(look_, one.key, shown);
-        if (!target) return failure(target.error());
-        const auto& [entry, row, is_state, wire] = *target;
+        DARKROOM_TRY_VALUE(const LookTarget target, find_target(look_, one.key, shown));
+        const auto& [entry, row, is_state, wire] = target;
         if (wire != nullptr) {
             const Result<> done = files_.put(*entry, *wire, one.text);
             return done ? done : user_error(fmt::format("{}: {}", shown, done.error().text));
@@ -49,7 +47,7 @@ class Overrider {
         const Result<ParamValue> value = parse_text(*row, one.text);
         if (!value) return user_error(fmt::format("{}: {}", shown, value.error().text));
         if (!is_state) {
-            if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
+            DARKROOM_TRY(assign(*row, entry->words, *value, shown));
             const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
             if (row->is_amount && !entry->is_of_ui) {
                 entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
@@ -62,7 +60,7 @@ class Overrider {
             return {};
         }
         StateWords words = state_words(entry->state);
-        if (Result<> done = assign(*row, words, *value, shown); !done) return done;
+        DARKROOM_TRY(assign(*row, words, *value, shown));
         entry->state = std::bit_cast<EntryState>(words);
         if (row->kind == Kind::Toggle) toggles_.emplace_back(entry, entry->state.enabled);
         return {};

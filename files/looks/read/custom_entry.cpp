@@ -53,9 +53,8 @@ Result<> share_effect(const Look& look, LookEntry& entry) {
 }
 
 Result<LookEntry> custom_entry(const std::filesystem::path& file) try {
-    const Result<CustomEffect> effect = CustomEffect::load(file);
-    if (!effect) return failure(effect.error());
-    LookEntry entry = entry_of(effect->info());
+    DARKROOM_TRY_VALUE(const CustomEffect effect, CustomEffect::load(file));
+    LookEntry entry = entry_of(effect.info());
     entry.effect_file = file.string();
     return entry;
 } catch (...) {

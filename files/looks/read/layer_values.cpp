@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "core/try.hpp"
 #include "looks/look_parts.hpp"
 
 namespace darkroom {
@@ -44,17 +45,16 @@ Result<std::vector<LookLayer::Value>> layer_values(Look& look, const std::string
     own_options.allows_modulation = false;
     own_options.is_scene = false;
     own_options.folder.clear();
-    Result<Look> other = read_look(options.folder / file, own_options);
-    if (!other) return failure(other.error());
-    const std::vector<std::string> names = entry_names(look), others = entry_names(*other);
+    DARKROOM_TRY_VALUE(Look other, read_look(options.folder / file, own_options));
+    const std::vector<std::string> names = entry_names(look), others = entry_names(other);
     for (std::size_t i = 0; i < others.size(); ++i) {
         const LookEntry* const own = find_entry(look, others[i]);
-        if (own != nullptr ? own->effect == other->entries[i].effect : is_idle(other->entries[i])) continue;
+        if (own != nullptr ? own->effect == other.entries[i].effect : is_idle(other.entries[i])) continue;
         return user_error(fmt::format("its entry '{}' ({}) is not in this look, which has {}", others[i],
-                                      other->entries[i].effect->name, fmt::join(names, ", ")));
+                                      other.entries[i].effect->name, fmt::join(names, ", ")));
     }
     std::vector<LookLayer::Value> values;
-    for (std::size_t i = 0; i < names.size(); ++i) add_difference(look.entries[i], names[i], *other, values);
+    for (std::size_t i = 0; i < names.size(); ++i) add_difference(look.entries[i], names[i], other, values);
     return values;
 }
 

@@ -149,9 +149,8 @@ namespace {
 Result<Look> parse(std::string_view text, const std::string& shown_name, const LookOptions& options,
                    const CameraLens& lens) {
     std::string shown = printable(shown_name);
-    const Result<toml::table> file = parse_toml(text, shown);
-    if (!file) return failure(file.error());
-    return LookReader(std::move(shown), options, lens).read(*file);
+    DARKROOM_TRY_VALUE(const toml::table file, parse_toml(text, shown));
+    return LookReader(std::move(shown), options, lens).read(file);
 }
 
 }  // namespace
@@ -168,17 +167,15 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
 }
 
 Result<std::string> read_look_text(const std::filesystem::path& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_toml_bytes});
-    if (!bytes) return failure(bytes.error());
-    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, read_file(path, {.max_size = max_toml_bytes}));
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
 Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options, const CameraLens& lens) try {
-    const Result<std::string> text = read_look_text(path);
-    if (!text) return failure(text.error());
+    DARKROOM_TRY_VALUE(const std::string text, read_look_text(path));
     LookOptions here = options;
     if (here.folder.empty()) here.folder = path.parent_path();
-    return parse(*text, path.string(), here, lens);
+    return parse(text, path.string(), here, lens);
 } catch (...) {
     return caught("read_look");
 }

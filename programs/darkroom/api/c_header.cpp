@@ -256,9 +256,8 @@ class CParser {
 }  // namespace
 
 Result<CHeader> parse_c_header(std::string_view text, std::string_view shown) {
-    Result<std::vector<CToken>> tokens = c_tokens(text, shown);
-    if (!tokens) return failure(std::move(tokens));
-    CParser parser(std::move(*tokens));
+    DARKROOM_TRY_VALUE(std::vector<CToken> tokens, c_tokens(text, shown));
+    CParser parser(std::move(tokens));
     if (!parser.parse()) return c_error(text, shown, parser.line(), parser.fault());
     return std::move(parser).header();
 }

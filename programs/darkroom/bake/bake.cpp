@@ -64,13 +64,12 @@ Result<darkroom::ImageUse> use_of(std::string_view image, const std::string& tex
 
 /// What --output-space says of a target of this format.
 Result<> set_target_color(const SpaceFlags& flags, darkroom::CompileDesc& desc) {
-    const Result<std::optional<darkroom::OutputSpace>> space = flags.space();
-    if (!space) return failure(space.error());
-    if (!*space) return {};
+    DARKROOM_TRY_VALUE(const std::optional<darkroom::OutputSpace> space, flags.space());
+    if (!space) return {};
     const std::string_view format = darkroom::gpu::format_name(desc.target.format);
-    desc.target_color = format.ends_with("SFLOAT") ? (*space)->floats : (*space)->integers;
+    desc.target_color = format.ends_with("SFLOAT") ? space->floats : space->integers;
     if (desc.target_color) return {};
-    return user_error(fmt::format("--output-space {}: a target of {} cannot hold it", (*space)->name, format));
+    return user_error(fmt::format("--output-space {}: a target of {} cannot hold it", space->name, format));
 }
 
 Result<darkroom::CompileDesc> desc_of(const Options& options) {
@@ -80,22 +79,17 @@ Result<darkroom::CompileDesc> desc_of(const Options& options) {
     const auto set = [](darkroom::ImageUse& use, std::string_view image, const std::string& text,
                         VkImageUsageFlags usage) -> Result<> {
         if (text.empty()) return {};
-        const Result<darkroom::ImageUse> read = use_of(image, text, usage);
-        if (!read) return failure(read.error());
-        use = *read;
+        DARKROOM_TRY_VALUE(use, use_of(image, text, usage));
         return {};
     };
-    if (Result<> done = set(desc.color, "color", options.color, VK_IMAGE_USAGE_SAMPLED_BIT); !done)
-        return failure(std::move(done));
-    if (Result<> done = set(desc.target, "target", options.target, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY(set(desc.color, "color", options.color, VK_IMAGE_USAGE_SAMPLED_BIT));
+    DARKROOM_TRY(set(desc.target, "target", options.target, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT));
     for (const darkroom::plan::FrameInput& input : frame_inputs) {
         if (input.use == nullptr) continue;
         const std::string& text = options.inputs[static_cast<std::size_t>(input.image)];
-        if (Result<> done = set(desc.*input.use, input.name, text, VK_IMAGE_USAGE_SAMPLED_BIT); !done)
-            return failure(std::move(done));
+        DARKROOM_TRY(set(desc.*input.use, input.name, text, VK_IMAGE_USAGE_SAMPLED_BIT));
     }
-    if (Result<> done = set_target_color(options.space, desc); !done) return failure(std::move(done));
+    DARKROOM_TRY(set_target_color(options.space, desc));
     return desc;
 }
 
@@ -106,7 +100,7 @@ Result<darkroom::Look> look_of(Options& options, const std::string& file) {
     Result<darkroom::Look> look = darkroom::read_look(file, options.look.options(&warnings));
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
-    if (const Result<> done = options.look.change(*look, true); !done) return failure(done.error());
+    DARKROOM_TRY(options.look.change(*look, true));
     return look;
 }
 
@@ -136,34 +130,27 @@ Result<std::vector<std::string>> look_files(const std::vector<std::string>& name
 }
 
 Result<> bake(Options& options) {
-    const Result<darkroom::DeviceProfile> profile = profile_of(options.profile);
-    if (!profile) return failure(profile.error());
-    const Result<std::vector<std::string>> looks = look_files(options.looks);
-    if (!looks) return failure(looks.error());
+    DARKROOM_TRY_VALUE(const darkroom::DeviceProfile profile, profile_of(options.profile));
+    DARKROOM_TRY_VALUE(const std::vector<std::string> looks, look_files(options.looks));
     const MissingFolders folders = options.makes_folder ? MissingFolders::Made : MissingFolders::Told;
     std::vector<std::filesystem::path> inputs = options.look.input_files();
-    inputs.insert(inputs.end(), looks->begin(), looks->end());
-    if (Result<> done = check_output(options.out, FileSet(inputs), folders); !done) return done;
-    Result<darkroom::CompileDesc> desc = desc_of(options);
-    if (!desc) return failure(std::move(desc));
+    inputs.insert(inputs.end(), looks.begin(), looks.end());
+    DARKROOM_TRY(check_output(options.out, FileSet(inputs), folders));
+    DARKROOM_TRY_VALUE(darkroom::CompileDesc desc, desc_of(options));
     darkroom::KernelFile file;
-    for (const std::string& look_file : *looks) {
-        const Result<darkroom::Look> look = look_of(options, look_file);
-        if (!look) return failure(look.error());
-        darkroom::Composer composer(darkroom::Device::assumed(*profile));
-        if (Result<> done = darkroom::apply(*look, composer, {.keeps_what_is_off = options.keeps_what_is_off}); !done)
-            return done;
+    for (const std::string& look_file : looks) {
+        DARKROOM_TRY_VALUE(const darkroom::Look look, look_of(options, look_file));
+        darkroom::Composer composer(darkroom::Device::assumed(profile));
+        DARKROOM_TRY(darkroom::apply(look, composer, {.keeps_what_is_off = options.keeps_what_is_off}));
         for (const std::string& text : options.sizes) {
-            const Result<VkExtent2D> size = parse_size(text);
-            if (!size) return failure(size.error());
-            desc->max_extent = *size;
-            if (const Result<> added = file.add(composer, *desc); !added)
+            DARKROOM_TRY_VALUE(desc.max_extent, parse_size(text));
+            if (const Result<> added = file.add(composer, desc); !added)
                 return darkroom::failure(
                     {added.error().fault, fmt::format("{}: {}", printable(look_file), added.error().text)});
         }
     }
     const std::vector<std::byte> bytes = file.bytes();
-    if (Result<> written = darkroom::write_file(options.out, bytes); !written) return written;
+    DARKROOM_TRY(darkroom::write_file(options.out, bytes));
     answer_unless_quiet(fmt::format("{}: {} shaders, {} bytes", printable(options.out), file.size(), bytes.size()));
     return {};
 }

@@ -47,9 +47,8 @@ struct Options {
 };
 
 Result<std::vector<long long>> parse_moments(const char* flag, const std::string& text) {
-    const Result<darkroom::FrameSet> set = parse_frames(text);
-    if (!set) return failure(set.error());
-    std::vector<long long> numbers = set->numbers();
+    DARKROOM_TRY_VALUE(const darkroom::FrameSet set, parse_frames(text));
+    std::vector<long long> numbers = set.numbers();
     if (numbers.size() > max_captured_frames)
         return user_error(fmt::format("{} {}: {} frames, at most {} are allowed", flag, printable(text), numbers.size(),
                                       max_captured_frames));
@@ -60,37 +59,24 @@ Result<std::vector<long long>> parse_moments(const char* flag, const std::string
 Result<CaptureJob> job_of(const Options& options) {
     CaptureJob job{.folder = options.folder};
     if (options.folder.empty()) return user_error("-o: a folder is needed");
-    Result<render::RenderDesc> desc = options.drawn.desc();
-    if (!desc) return failure(std::move(desc));
-    job.desc = *desc;
+    DARKROOM_TRY_VALUE(job.desc, options.drawn.desc());
     job.desc.positions = usual_samples;
-    if (Result<> done = options.samples.read_to(job.desc.positions); !done) return failure(std::move(done));
+    DARKROOM_TRY(options.samples.read_to(job.desc.positions));
     if (options.mean != "tone-mapped" && options.mean != "linear")
         return user_error(fmt::format("--mean {}: allowed is tone-mapped or linear", printable(options.mean)));
     job.desc.is_mean_weighed = options.mean == "tone-mapped";
-    const Result<scene::OrbitOverride> orbit = options.drawn.orbit();
-    if (!orbit) return failure(orbit.error());
-    job.orbit = *orbit;
-    const Result<std::uint64_t> seed = options.drawn.seed();
-    if (!seed) return failure(seed.error());
-    job.seed = *seed;
-    if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
-        return failure(std::move(done));
-    Result<std::vector<long long>> frames = parse_moments("--frames", options.frames);
-    if (!frames) return failure(std::move(frames));
-    job.frames = std::move(*frames);
+    DARKROOM_TRY_VALUE(job.orbit, options.drawn.orbit());
+    DARKROOM_TRY_VALUE(job.seed, options.drawn.seed());
+    DARKROOM_TRY(options.frames_per_second.read_to(job.frames_per_second));
+    DARKROOM_TRY_VALUE(job.frames, parse_moments("--frames", options.frames));
     job.truth_frames = job.frames;
     if (options.truth_frames) {
-        Result<std::vector<long long>> truth = parse_moments("--truth-frames", *options.truth_frames);
-        if (!truth) return failure(std::move(truth));
-        job.truth_frames = std::move(*truth);
+        DARKROOM_TRY_VALUE(job.truth_frames, parse_moments("--truth-frames", *options.truth_frames));
     }
     if (!std::ranges::includes(job.frames, job.truth_frames))
         return user_error(fmt::format("--truth-frames {}: are not all among --frames {}",
                                       printable(*options.truth_frames), printable(options.frames)));
-    Result<std::vector<CaptureScale>> scales = parse_scales(options.scales, job.desc.extent);
-    if (!scales) return failure(std::move(scales));
-    job.scales = std::move(*scales);
+    DARKROOM_TRY_VALUE(job.scales, parse_scales(options.scales, job.desc.extent));
     return job;
 }
 
@@ -115,11 +101,10 @@ class Capture {
     Capture(const Options& options, CaptureJob job) : options_(options), job_(std::move(job)) {}
 
     Result<> run() {
-        if (Result<> done = read(); !done) return done;
-        if (Result<> done = make(); !done) return done;
+        DARKROOM_TRY(read());
+        DARKROOM_TRY(make());
         Progress progress(job_.frames.size() * job_.scales.size() + job_.truth_frames.size());
-        for (const long long frame : job_.frames)
-            if (Result<> done = capture(frame, progress); !done) return done;
+        for (const long long frame : job_.frames) DARKROOM_TRY(capture(frame, progress));
         // It comes last: a folder with a description is whole.
         const std::string text = describe(job_, fs::path(options_.scene).filename().string()).dump(2) + "\n";
         return darkroom::write_file(job_.folder / capture_description, std::as_bytes(std::span(text)));
@@ -136,30 +121,27 @@ class Capture {
         if (!read) return failure(std::move(read));
         scene_ = std::move(*read);
         assets_ = scene::load_assets(scene_);
-        if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
+        DARKROOM_TRY(scene::check_snapshot(scene_, assets_));
         for (const std::string& warning : assets_.warnings) warn(warning);
         return {};
     }
 
     /// Renderers first: what the device refuses leaves the folder as it was.
     Result<> make() {
-        Result<darkroom::Device> device = options_.device.create();
-        if (!device) return failure(std::move(device));
-        device_ = std::make_unique<darkroom::Device>(std::move(*device));
-        if (Result<> done = darkroom::check_extent(*device_, job_.desc.extent); !done) return done;
+        DARKROOM_TRY_VALUE(darkroom::Device device, options_.device.create());
+        device_ = std::make_unique<darkroom::Device>(std::move(device));
+        DARKROOM_TRY(darkroom::check_extent(*device_, job_.desc.extent));
         job_.desc.draw.has_grid = job_.desc.draw.has_grid && scene_.has_grid;
-        Result<render::Renderer> truth = render::Renderer::create(*device_, scene_, assets_, job_.desc);
-        if (!truth) return failure(std::move(truth));
-        truth_.emplace(std::move(*truth));
+        DARKROOM_TRY_VALUE(render::Renderer truth, render::Renderer::create(*device_, scene_, assets_, job_.desc));
+        truth_.emplace(std::move(truth));
         for (const CaptureScale& scale : job_.scales) {
             render::RenderDesc desc = job_.desc;
             desc.extent = scale.extent;
             desc.positions = 1;
             desc.has_transparency = true;
             desc.draw.mip_bias = darkroom::Composer::mip_bias(scale.exact);
-            Result<render::Renderer> made = truth_->sharing(desc);
-            if (!made) return failure(std::move(made));
-            inputs_.push_back(std::move(*made));
+            DARKROOM_TRY_VALUE(render::Renderer made, truth_->sharing(desc));
+            inputs_.push_back(std::move(made));
         }
         return make_folders();
     }
@@ -173,11 +155,11 @@ class Capture {
             return user_error(fmt::format("{}: the capture takes up to {:.1f} MB, {:.1f} MB are free",
                                           printable(job_.folder.string()), static_cast<double>(job_.bytes()) / megabyte,
                                           static_cast<double>(space.available) / megabyte));
-        if (Result<> done = check_folder(job_.folder, MissingFolders::Made); !done) return done;
+        DARKROOM_TRY(check_folder(job_.folder, MissingFolders::Made));
         fs::remove(job_.folder / capture_description, error);
-        if (Result<> done = check_folder(job_.folder / "truth", MissingFolders::Made); !done) return done;
+        DARKROOM_TRY(check_folder(job_.folder / "truth", MissingFolders::Made));
         for (const CaptureScale& scale : job_.scales)
-            if (Result<> done = check_folder(job_.folder / scale.folder, MissingFolders::Made); !done) return done;
+            DARKROOM_TRY(check_folder(job_.folder / scale.folder, MissingFolders::Made));
         return {};
     }
 
@@ -195,38 +177,36 @@ class Capture {
             for (const std::string& warning : snapshot.warnings) warn(warning);
         for (std::size_t i = 0; i < inputs_.size(); ++i) {
             const auto number = static_cast<std::uint64_t>(frame);
-            Result<darkroom::FrameFile> input =
-                shoot(inputs_[i], snapshot, frame, jitter_of(number, job_.scales[i].exact));
-            if (!input) return failure(std::move(input));
-            input->reactive = reactive_mask(*input);
-            input->exposure = 1;
-            if (Result<> done = write(job_.scales[i].files(), frame, *input, progress); !done) return done;
+            DARKROOM_TRY_VALUE(darkroom::FrameFile input,
+                               shoot(inputs_[i], snapshot, frame, jitter_of(number, job_.scales[i].exact)));
+            input.reactive = reactive_mask(input);
+            input.exposure = 1;
+            DARKROOM_TRY(write(job_.scales[i].files(), frame, input, progress));
         }
         if (!std::ranges::binary_search(job_.truth_frames, frame)) return {};
-        const Result<darkroom::FrameFile> truth = shoot(*truth_, snapshot, frame, {});
-        if (!truth) return failure(truth.error());
-        return write(CaptureJob::truth_files(), frame, *truth, progress);
+        DARKROOM_TRY_VALUE(const darkroom::FrameFile truth, shoot(*truth_, snapshot, frame, {}));
+        return write(CaptureJob::truth_files(), frame, truth, progress);
     }
 
     /// Without lights, whose shadows are most of a file.
     Result<darkroom::FrameFile> shoot(render::Renderer& renderer, const scene::Snapshot& snapshot, long long number,
                                       const render::FrameJitter& jitter) const {
-        if (Result<> done = renderer.prepare(snapshot, jitter); !done) return failure(std::move(done));
+        DARKROOM_TRY(renderer.prepare(snapshot, jitter));
         darkroom::Frame frame = renderer.frame();
         frame.lights = {};
         frame.time = job_.time_of(number);
         frame.delta_time = 1 / job_.frames_per_second;
         frame.frame_index = static_cast<std::uint64_t>(number);
-        Result<darkroom::FrameLayers> layers =
-            darkroom::read_layers(*device_, frame, [&](VkCommandBuffer commands) { return renderer.record(commands); });
-        if (!layers) return failure(std::move(layers));
-        return frame_file(frame, std::move(*layers));
+        DARKROOM_TRY_VALUE(darkroom::FrameLayers layers,
+                           darkroom::read_layers(*device_, frame,
+                                                 [&](VkCommandBuffer commands) { return renderer.record(commands); }));
+        return frame_file(frame, std::move(layers));
     }
 
     Result<> write(const std::string& files, long long number, const darkroom::FrameFile& frame,
                    Progress& progress) const {
         const fs::path path = darkroom::numbered(job_.folder / files, number);
-        if (Result<> done = darkroom::write_frame(path, frame); !done) return done;
+        DARKROOM_TRY(darkroom::write_frame(path, frame));
         progress.step(
             {.from = options_.scene, .to = path.string(), .width = frame.color.width, .height = frame.color.height});
         return {};

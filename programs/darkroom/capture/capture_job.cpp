@@ -80,9 +80,8 @@ Json describe(const CaptureJob& job, std::string_view scene_file) {
 
 Result<CapturedTruth> read_capture(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / capture_description;
-    const auto bytes = darkroom::read_file(file, {.max_size = max_description_bytes});
-    if (!bytes) return failure(bytes.error());
-    const std::optional<Json> json = Json::parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    DARKROOM_TRY_VALUE(const auto bytes, darkroom::read_file(file, {.max_size = max_description_bytes}));
+    const std::optional<Json> json = Json::parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const auto refused = [&](std::string_view what) {
         return user_error(fmt::format("{}: {}", printable(file.string()), what));
     };

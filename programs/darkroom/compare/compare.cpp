@@ -55,15 +55,13 @@ Result<CompareRequest> parse_layers(const std::string& list) {
 }
 
 Result<CompareRequest> request_of(const Options& options) {
-    Result<CompareRequest> request = parse_layers(options.layers);
-    if (!request) return request;
-    Thresholds& most = request->thresholds;
+    DARKROOM_TRY_VALUE(CompareRequest request, parse_layers(options.layers));
+    Thresholds& most = request.thresholds;
     for (const auto& [flag, to] :
          {std::pair(&options.fail_max, &most.max), std::pair(&options.fail_psnr, &most.psnr),
           std::pair(&options.fail_above, &most.flip), std::pair(&options.fail_flip, &most.flip)})
-        if (Result<> done = flag->read_to(*to); !done) return failure(std::move(done));
-    const bool has_color =
-        request->has_all_layers || std::ranges::find(request->layers, "color") != request->layers.end();
+        DARKROOM_TRY(flag->read_to(*to));
+    const bool has_color = request.has_all_layers || std::ranges::find(request.layers, "color") != request.layers.end();
     for (const auto& [is_given, name] :
          {std::pair(most.flip.has_value(), "--fail-flip"), std::pair(!options.diff.empty(), "--diff"),
           std::pair(!options.sheet.empty(), "--sheet"), std::pair(!options.html.empty(), "--html")})
@@ -79,13 +77,13 @@ Result<> check_written(const std::string& path, const FilePairs& pairs, bool mak
     std::vector<std::filesystem::path> inputs;
     for (const FilePairs::Pair& pair : pairs.pairs) inputs.insert(inputs.end(), {pair.reference, pair.test});
     const MissingFolders folders = makes_folders ? MissingFolders::Made : MissingFolders::Told;
-    if (Result<> done = check_output(path, FileSet(inputs), folders); !done) return done;
+    DARKROOM_TRY(check_output(path, FileSet(inputs), folders));
     return {};
 }
 
 Result<> check_picture(const std::string& path) {
     if (path.empty()) return {};
-    if (const auto kind = darkroom::sample_kind(path, {}); !kind) return failure(kind.error());
+    DARKROOM_TRY(darkroom::sample_kind(path, {}));
     return {};
 }
 

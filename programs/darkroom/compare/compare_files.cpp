@@ -34,7 +34,7 @@ class FileComparison {
         out_.test = test.string();
         color_ = color;
         for (const std::string& name : request_.has_all_layers ? all_layers() : request_.layers)
-            if (Result<> done = add(name); !done) return failure(std::move(done));
+            DARKROOM_TRY(add(name));
         judge();
         return std::move(out_);
     }
@@ -64,22 +64,19 @@ class FileComparison {
     Result<> add(const std::string& name) {
         std::array<FileLayer, 2> layers;
         for (std::size_t i = 0; i < 2; ++i) {
-            Result<FileLayer> found = files_[i].find(name);
-            if (!found) return failure(std::move(found));
-            layers[i] = std::move(*found);
+            DARKROOM_TRY_VALUE(FileLayer found, files_[i].find(name));
+            layers[i] = std::move(found);
         }
         return layers[0].name == "color" && layers[1].name == "color" ? add_color(layers) : add_numbers(layers);
     }
 
     Result<> add_color(const std::array<FileLayer, 2>& layers) {
-        Result<darkroom::ComparablePicture> a = darkroom::read_comparable(files_[0]);
-        if (!a) return failure(std::move(a));
-        Result<darkroom::ComparablePicture> b = darkroom::read_comparable(files_[1]);
-        if (!b) return failure(std::move(b));
-        if (a->encoding != b->encoding)
+        DARKROOM_TRY_VALUE(darkroom::ComparablePicture a, darkroom::read_comparable(files_[0]));
+        DARKROOM_TRY_VALUE(darkroom::ComparablePicture b, darkroom::read_comparable(files_[1]));
+        if (a.encoding != b.encoding)
             return user_error(fmt::format(
                 "{}: one is encoded for a display and the other holds linear floats, they cannot be compared", both()));
-        Result<darkroom::Comparison> result = darkroom::compare(a->picture, b->picture, {.encoding = a->encoding});
+        Result<darkroom::Comparison> result = darkroom::compare(a.picture, b.picture, {.encoding = a.encoding});
         if (!result)
             return darkroom::failure({result.error().fault, fmt::format("{}: {}", both(), result.error().text)});
         out_.layers.push_back(
@@ -87,27 +84,24 @@ class FileComparison {
              .channels = {"red", "green", "blue"},
              .errors = *result,
              .alpha = result->alpha,
-             .flip = ComparedLayer::Flip{a->encoding == darkroom::PictureEncoding::SceneLinear, result->flip_mean,
+             .flip = ComparedLayer::Flip{a.encoding == darkroom::PictureEncoding::SceneLinear, result->flip_mean,
                                          result->flip_weighted_median, result->flip_max}});
-        if (color_ != nullptr) *color_ = ComparedColor{std::move(*a), std::move(*b), std::move(*result)};
+        if (color_ != nullptr) *color_ = ComparedColor{std::move(a), std::move(b), std::move(*result)};
         return {};
     }
 
     Result<> add_numbers(const std::array<FileLayer, 2>& layers) {
-        Result<darkroom::LayerSamples> a = files_[0].read(layers[0]);
-        if (!a) return failure(std::move(a));
-        Result<darkroom::LayerSamples> b = files_[1].read(layers[1]);
-        if (!b) return failure(std::move(b));
-        if (a->width != b->width || a->height != b->height || a->channels != b->channels)
+        DARKROOM_TRY_VALUE(darkroom::LayerSamples a, files_[0].read(layers[0]));
+        DARKROOM_TRY_VALUE(darkroom::LayerSamples b, files_[1].read(layers[1]));
+        if (a.width != b.width || a.height != b.height || a.channels != b.channels)
             return user_error(fmt::format(
                 "{}: the layers {} differ in size: {}x{} with {} channels and {}x{} with {}; "
                 "they must be the same",
-                both(), shown(layers[0].name), a->width, a->height, a->channels, b->width, b->height, b->channels));
-        out_.layers.push_back(
-            {.name = layers[0].name,
-             .channels = files_[0].channel_names(layers[0]),
-             .errors = darkroom::measure(a->values, b->values,
-                                         {.width = a->width, .stride = a->channels, .count = a->channels})});
+                both(), shown(layers[0].name), a.width, a.height, a.channels, b.width, b.height, b.channels));
+        out_.layers.push_back({.name = layers[0].name,
+                               .channels = files_[0].channel_names(layers[0]),
+                               .errors = darkroom::measure(
+                                   a.values, b.values, {.width = a.width, .stride = a.channels, .count = a.channels})});
         return {};
     }
 
@@ -155,11 +149,9 @@ double ComparedLayer::max_error() const { return std::max(errors.max_error, alph
 
 Result<ComparedFiles> compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
                                     const CompareRequest& request, std::optional<ComparedColor>* color) {
-    Result<LayerFile> a = LayerFile::open(reference);
-    if (!a) return failure(std::move(a));
-    Result<LayerFile> b = LayerFile::open(test);
-    if (!b) return failure(std::move(b));
-    return FileComparison(request, std::move(*a), std::move(*b)).run(reference, test, color);
+    DARKROOM_TRY_VALUE(LayerFile a, LayerFile::open(reference));
+    DARKROOM_TRY_VALUE(LayerFile b, LayerFile::open(test));
+    return FileComparison(request, std::move(a), std::move(b)).run(reference, test, color);
 }
 
 }  // namespace app

@@ -194,13 +194,11 @@ Result<> ComparePage::add(std::size_t index, const ComparedFiles& files, const C
                                     darkroom::shown_picture(test.picture, test.encoding), std::move(difference.picture),
                                     comparison.flip_map};
     for (std::size_t i = 0; i < pictures.size(); ++i) {
-        const Result<Picture> small = darkroom::no_larger_than(std::move(pictures[i]), max_side);
-        if (!small) return failure(small.error());
-        pair.shown_width = small->width;
-        pair.shown_height = small->height;
-        const Result<std::vector<std::byte>> png = darkroom::png_of(*small);
-        if (!png) return failure(png.error());
-        pair.uris[i] = "data:image/png;base64," + darkroom::base64(*png);
+        DARKROOM_TRY_VALUE(const Picture small, darkroom::no_larger_than(std::move(pictures[i]), max_side));
+        pair.shown_width = small.width;
+        pair.shown_height = small.height;
+        DARKROOM_TRY_VALUE(const std::vector<std::byte> png, darkroom::png_of(small));
+        pair.uris[i] = "data:image/png;base64," + darkroom::base64(png);
     }
     pairs_.insert(place, std::move(pair));
     const auto total = [&] {

@@ -53,11 +53,10 @@ Result<Files> files_of_folder(const fs::path& folder) {
 }
 
 Result<Files> files_of_sequence(const std::string& input) {
-    const Result<std::vector<darkroom::NumberedFile>> found = darkroom::expand_inputs({&input, 1});
-    if (!found) return failure(found.error());
+    DARKROOM_TRY_VALUE(const std::vector<darkroom::NumberedFile> found, darkroom::expand_inputs({&input, 1}));
     Files files;
     // In the order of their numbers, whatever their signs.
-    for (const auto& [path, number] : *found)
+    for (const auto& [path, number] : found)
         files.emplace(fmt::format("{:020}", number + darkroom::FrameSet::max_number), path);
     return files;
 }
@@ -81,20 +80,18 @@ Result<FilePairs> find_pairs(const std::string& reference, const std::string& te
     const auto files_of = [&](const std::string& name) {
         return side == Side::Folder ? files_of_folder(name) : files_of_sequence(name);
     };
-    const Result<Files> a = files_of(reference);
-    if (!a) return failure(a.error());
-    const Result<Files> b = files_of(test);
-    if (!b) return failure(b.error());
-    if (a->empty() && b->empty())
+    DARKROOM_TRY_VALUE(const Files a, files_of(reference));
+    DARKROOM_TRY_VALUE(const Files b, files_of(test));
+    if (a.empty() && b.empty())
         return user_error(fmt::format("{} and {}: no pictures in either", printable(reference), printable(test)));
-    for (const auto& [key, path] : *a) {
-        if (const auto found = b->find(key); found != b->end())
+    for (const auto& [key, path] : a) {
+        if (const auto found = b.find(key); found != b.end())
             out.pairs.push_back({path, found->second});
         else
             out.only_in_reference.push_back(path);
     }
-    for (const auto& [key, path] : *b)
-        if (!a->contains(key)) out.only_in_test.push_back(path);
+    for (const auto& [key, path] : b)
+        if (!a.contains(key)) out.only_in_test.push_back(path);
     return out;
 }
 

@@ -139,8 +139,7 @@ Result<> check_gaps(const Options& options, Job& job) {
         return user_error(
             fmt::format("--gaps hold: {} frames are missing {} {}, at most {} are held", missing, where, shown, most));
     };
-    for (const Step& step : job.steps)
-        if (Result<> done = check(step.missing, "before", step); !done) return done;
+    for (const Step& step : job.steps) DARKROOM_TRY(check(step.missing, "before", step));
     return job.steps.empty() ? Result<>() : check(job.missing_at_end, "behind", job.steps.back());
 }
 
@@ -151,35 +150,32 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     using Paths = std::vector<std::filesystem::path>;
     Paths also_read = options.look.input_files();
     std::ranges::move(ui_files(job.look), std::back_inserter(also_read));
-    const Result<Paths> outputs =
-        job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
-                   : output_paths(inputs, job.out, also_read, is_in_range, options.run.missing_folders());
-    if (!outputs) return failure(outputs.error());
+    DARKROOM_TRY_VALUE(const Paths outputs, job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
+                                                       : output_paths(inputs, job.out, also_read, is_in_range,
+                                                                      options.run.missing_folders()));
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
-    for (const std::filesystem::path& output : job.stream ? Paths() : *outputs) {
-        const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
-        if (!samples) return failure(samples.error());
+    for (const std::filesystem::path& output : job.stream ? Paths() : outputs) {
+        DARKROOM_TRY_VALUE(const darkroom::SampleKind samples, darkroom::sample_kind(output, job.write));
         if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
             return no_place_for_layers(output);
-        job.develop.target = target_for(*samples, job.write);
-        job.develop.color = darkroom::color_of(job.write, *samples);
+        job.develop.target = target_for(samples, job.write);
+        job.develop.color = darkroom::color_of(job.write, samples);
     }
     // Made of the picture before it is rounded.
     if (job.write.has_alpha_of_glow && job.develop.target == darkroom::DevelopTarget::Encoded8)
         job.develop.target = darkroom::DevelopTarget::EncodedFloat;
     if (job.write.alpha) job.develop.color = with_alpha(job.develop.color, job.develop.target, job.write);
     suit(job.look, job.develop.target, job.write);
-    if (!job.stream)
-        if (Result<> done = check_codes(job.look, job.develop.target, job.write); !done) return done;
+    if (!job.stream) DARKROOM_TRY(check_codes(job.look, job.develop.target, job.write));
     std::size_t next_written = inputs.size();
     for (std::size_t i = inputs.size(); i-- > 0;) {
         const bool is_asked_for = is_in_range(inputs[i].number);
-        const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
+        const bool is_written = is_asked_for && !options.run.is_skipped(outputs[i]);
         job.skipped += is_asked_for && !is_written ? 1 : 0;
         if (is_written) next_written = i;
         if (next_written < inputs.size() && next_written - i <= pre_roll)
-            job.steps.push_back({i, inputs[i].path, (*outputs)[i], inputs[i].number, is_written});
+            job.steps.push_back({i, inputs[i].path, outputs[i], inputs[i].number, is_written});
     }
     std::ranges::reverse(job.steps);
     return check_gaps(options, job);
@@ -191,9 +187,7 @@ Result<std::size_t> add_inputs(const Options& options, Job& job) {
     for (std::string& name : names) name = with_eye(name, job.eye);
     // Files of one eye each have no other.
     if (names != options.inputs) job.frame.view.clear();
-    Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(names);
-    if (!inputs) return failure(std::move(inputs));
-    job.inputs = std::move(*inputs);
+    DARKROOM_TRY_VALUE(job.inputs, darkroom::expand_inputs(names));
     // Frames on twos are a step apart as others are.
     long long least = 0;
     for (std::size_t i = 1; i < job.inputs.size(); ++i)
@@ -201,9 +195,7 @@ Result<std::size_t> add_inputs(const Options& options, Job& job) {
             least = least == 0 ? step : std::min(least, step);
     job.step = std::max(1LL, least);
     if (options.frames) {
-        Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
-        if (!parsed) return failure(std::move(parsed));
-        job.frames = std::move(*parsed);
+        DARKROOM_TRY_VALUE(job.frames, parse_frames(*options.frames));
     }
     for (std::size_t i = job.inputs.size(); i-- > 0;)
         if (job.is_asked_for(job.inputs[i].number)) return i;
@@ -225,7 +217,7 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     Job job{.eye = eye, .out = with_eye(options.out, eye)};
     if (options.frame.eyes().size() > 1 && job.out == options.out)
         return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
-    if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
+    DARKROOM_TRY(options.run.start_report());
     if (options.keeps_layers && options.frame.keeps_overscan)
         return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
     if (!options.output_size.empty() && options.keeps_layers)
@@ -234,67 +226,40 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
         return user_error("--timings: works without --reference, which does not run on the device");
     if (options.time.is_given() && options.frames_per_second.is_given())
         return user_error("--time: --fps sets the time of every frame; give one of the two");
-    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
-    if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
-        return failure(std::move(done));
-    if (Result<> done = options.write.ocio.check(options.frame.has_input_space()); !done)
-        return failure(std::move(done));
-    Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration, eye);
-    if (!frame) return failure(std::move(frame));
-    job.frame = std::move(*frame);
-    Result<darkroom::WriteOptions> write = options.write.options();
-    if (!write) return failure(std::move(write));
-    job.write = std::move(*write);
-    Result<std::optional<StreamDesc>> stream =
-        options.write.stream(job.out, job.frames_per_second.value_or(stream_frames_per_second));
-    if (!stream) return failure(std::move(stream));
-    job.stream = *stream;
-    if (job.stream)
-        if (Result<> done = options.run.check_stream(); !done) return failure(std::move(done));
-    const Result<std::size_t> jobs = options.run.jobs();
-    if (!jobs) return failure(jobs.error());
-    job.jobs = *jobs;
+    DARKROOM_TRY(options.time.read_to(job.time));
+    DARKROOM_TRY(options.frames_per_second.read_to(job.frames_per_second));
+    DARKROOM_TRY(options.write.ocio.check(options.frame.has_input_space()));
+    DARKROOM_TRY_VALUE(job.frame, options.frame.options(options.write.ocio.configuration, eye));
+    DARKROOM_TRY_VALUE(job.write, options.write.options());
+    DARKROOM_TRY_VALUE(job.stream,
+                       options.write.stream(job.out, job.frames_per_second.value_or(stream_frames_per_second)));
+    if (job.stream) DARKROOM_TRY(options.run.check_stream());
+    DARKROOM_TRY_VALUE(job.jobs, options.run.jobs());
     if (!options.size.empty()) {
-        const Result<darkroom::NewSize> size = parse_new_size(options.size);
-        if (!size) return failure(size.error());
-        job.size = *size;
+        DARKROOM_TRY_VALUE(job.size, parse_new_size(options.size));
     }
     if (!options.output_size.empty()) {
-        const Result<VkExtent2D> size = parse_size(options.output_size, "--output-size");
-        if (!size) return failure(size.error());
-        job.develop.target_extent = *size;
+        DARKROOM_TRY_VALUE(job.develop.target_extent, parse_size(options.output_size, "--output-size"));
     }
-    const Result<darkroom::KernelStage> stage = options.device.stage();
-    if (!stage) return failure(stage.error());
-    job.develop.kernels = *stage;
+    DARKROOM_TRY_VALUE(job.develop.kernels, options.device.stage());
     job.develop.fuse = options.device.is_fused();
     job.develop.frames_in_flight = 2;
-    Result<darkroom::Look> look = options.look.look_of_frames();
-    if (!look) return failure(std::move(look));
-    job.look = std::move(*look);
-    if (Result<> done = check_ui_files(job.look); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(job.look, options.look.look_of_frames());
+    DARKROOM_TRY(check_ui_files(job.look));
     if (!options.look.events.empty()) {
-        Result<Timeline> timeline = Timeline::read(options.look.events, job.look);
-        if (!timeline) return failure(std::move(timeline));
-        job.timeline = std::move(*timeline);
+        DARKROOM_TRY_VALUE(job.timeline, Timeline::read(options.look.events, job.look));
     }
     const double delta_time = 1 / job.frames_per_second.value_or(usual_frames_per_second);
-    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.timeline, job.frame);
-    if (!pre_roll) return failure(pre_roll.error());
+    DARKROOM_TRY_VALUE(const std::uint32_t pre_roll, add_needs(job.look, delta_time, job.timeline, job.frame));
     job.frame.keeps_halves = !options.is_reference;
-    const Result<std::size_t> last = add_inputs(options, job);
-    if (!last) return failure(last.error());
+    DARKROOM_TRY_VALUE(const std::size_t last, add_inputs(options, job));
     const Motion motion(job.look, job.timeline, [&job](std::size_t place) { return time_of(job, place); });
-    const Result<std::uint32_t> moved_pre_roll = motion.pre_roll(job.look, delta_time, *last);
-    if (!moved_pre_roll) return failure(moved_pre_roll.error());
-    if (Result<> done = add_steps(options, std::max(*pre_roll, *moved_pre_roll), job); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY_VALUE(const std::uint32_t moved_pre_roll, motion.pre_roll(job.look, delta_time, last));
+    DARKROOM_TRY(add_steps(options, std::max(pre_roll, moved_pre_roll), job));
     // What is wrong with one is told before any work, unless only its own frame is to fail.
     if (darkroom::has_number_pattern(job.frame.camera_file) && !options.run.keeps_going)
         for (const Step& step : job.steps)
-            if (const auto camera = darkroom::read_camera(darkroom::numbered(job.frame.camera_file, step.number));
-                !camera)
-                return failure(camera.error());
+            DARKROOM_TRY(darkroom::read_camera(darkroom::numbered(job.frame.camera_file, step.number)));
     // One file is decoded by all threads, several by one each.
     if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
     return job;
@@ -344,15 +309,13 @@ class Develop {
     Result<> make_composer() {
         const std::lock_guard lock(making_);
         if (composer_) return {};
-        Result<darkroom::Device> device =
-            options_.is_reference ? options_.device.create_if_named() : options_.device.create();
-        if (!device) return failure(std::move(device));
-        auto made = std::make_unique<darkroom::Device>(std::move(*device));
+        DARKROOM_TRY_VALUE(darkroom::Device device,
+                           options_.is_reference ? options_.device.create_if_named() : options_.device.create());
+        auto made = std::make_unique<darkroom::Device>(std::move(device));
         auto composer = std::make_unique<darkroom::Composer>(
             *made, darkroom::ComposerDesc{.frames_in_flight = job_.develop.frames_in_flight,
                                           .has_timers = options_.run.has_timings});
-        if (Result<> done = darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}); !done)
-            return done;
+        DARKROOM_TRY(darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}));
         developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
         device_ = std::move(made);
         composer_ = std::move(composer);
@@ -363,20 +326,18 @@ class Develop {
 
     Result<> decode(std::size_t i) {
         const Step& step = job_.steps[i];
-        Result<darkroom::FrameFile> frame = read_frame({step.input, step.number}, job_.frame);
-        if (!frame) return failure(std::move(frame));
-        if (Result<> done = make_composer(); !done) return done;
-        const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame->color.width, frame->color.height})
-                                           .of(frame->color.width, frame->color.height);
+        DARKROOM_TRY_VALUE(darkroom::FrameFile frame, read_frame({step.input, step.number}, job_.frame));
+        DARKROOM_TRY(make_composer());
+        const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame.color.width, frame.color.height})
+                                           .of(frame.color.width, frame.color.height);
         if (Result<> done = darkroom::check_extent(*device_, {size.width, size.height}); !done)
             return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
         // Alpha that is not kept is a mask at most, as scenes write it.
-        const bool has_alpha = job_.write.alpha && frame->has_alpha;
-        if (has_alpha && !frame->is_associated) darkroom::associate(frame->color);
-        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), size);
-        if (!sized) return failure(std::move(sized));
+        const bool has_alpha = job_.write.alpha && frame.has_alpha;
+        if (has_alpha && !frame.is_associated) darkroom::associate(frame.color);
+        DARKROOM_TRY_VALUE(darkroom::FrameFile sized, darkroom::resize(std::move(frame), size));
         Item& item = items_[i];
-        item.frame = std::move(*sized);
+        item.frame = std::move(sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
         item.input.is_color_associated = has_alpha;
@@ -406,22 +367,18 @@ class Develop {
         if (i == 0) tell_of_assumed_view(item.frame, shown(i));
         item.input.camera.is_cut = !follows(job_.steps[i]);
         next_place_ = job_.steps[i].place + 1;
-        if (Result<> done = motion_.advance(*composer_, job_.steps[i].place, item.input.time); !done) return done;
+        DARKROOM_TRY(motion_.advance(*composer_, job_.steps[i].place, item.input.time));
         const VkExtent2D output = job_.develop.target_extent;
-        const auto ui = motion_.picture(output.width != 0 ? output : item.input.extent);
-        if (!ui) return failure(ui.error());
-        item.ui = *ui;
+        DARKROOM_TRY_VALUE(item.ui, motion_.picture(output.width != 0 ? output : item.input.extent));
         item.input.ui = *item.ui;
         if (options_.is_reference) {
             std::vector<std::string> left_out;
-            Result<darkroom::DevelopedPicture> picture =
-                develop_by_reference(*composer_, item.input, job_.develop, histories_, left_out);
-            if (!picture) return failure(std::move(picture));
-            item.picture = std::move(*picture);
+            DARKROOM_TRY_VALUE(item.picture,
+                               develop_by_reference(*composer_, item.input, job_.develop, histories_, left_out));
             tell_of_what_is_left_out(i, left_out);
             return {};
         }
-        if (Result<> done = developer_->submit(*composer_, item.input); !done) return done;
+        DARKROOM_TRY(developer_->submit(*composer_, item.input));
         tell_of_what_is_left_out(i, developer_->plan().left_out);
         if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
         return {};
@@ -439,9 +396,7 @@ class Develop {
     Result<> finish_step(std::size_t i) {
         Item& item = items_[i];
         if (!options_.is_reference) {
-            Result<darkroom::DevelopedPicture> picture = developer_->finish();
-            if (!picture) return failure(std::move(picture));
-            item.picture = std::move(*picture);
+            DARKROOM_TRY_VALUE(item.picture, developer_->finish());
             if (options_.run.has_timings) pass_times_.add(composer_->times().passes);
         }
         item.extent = item.picture.extent;
@@ -463,8 +418,7 @@ class Develop {
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
         if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
-        if (options_.keeps_layers)
-            if (Result<> done = keep_layers(i, options); !done) return done;
+        if (options_.keeps_layers) DARKROOM_TRY(keep_layers(i, options));
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
     }
 
@@ -483,11 +437,10 @@ class Develop {
 
     /// Read again, so that only those that are being encoded are in memory.
     Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
-        Result<darkroom::KeptLayers> layers = darkroom::read_kept_layers(job_.steps[i].input, job_.frame);
-        if (!layers) return failure(std::move(layers));
-        for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
-        if (layers->primaries) warn_of_primaries(i, *layers->primaries, options);
-        options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
+        DARKROOM_TRY_VALUE(darkroom::KeptLayers layers, darkroom::read_kept_layers(job_.steps[i].input, job_.frame));
+        for (const std::string& warning : layers.warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        if (layers.primaries) warn_of_primaries(i, *layers.primaries, options);
+        options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(layers));
         return {};
     }
 
@@ -495,10 +448,8 @@ class Develop {
         if (!stream_ || !job_.steps[i].is_written) return {};
         const std::vector<std::byte>& packed = items_[i].packed;
         // Before the first one there is none to hold but itself.
-        if (Result<> done = hold(i, last_packed_.empty() ? packed : last_packed_, job_.steps[i].missing, "before");
-            !done)
-            return done;
-        if (Result<> done = stream_->write(packed, items_[i].extent, shown(i)); !done) return done;
+        DARKROOM_TRY(hold(i, last_packed_.empty() ? packed : last_packed_, job_.steps[i].missing, "before"));
+        DARKROOM_TRY(stream_->write(packed, items_[i].extent, shown(i)));
         if (i + 1 == job_.steps.size()) return hold(i, packed, job_.missing_at_end, "behind");
         last_packed_ = has_gaps_ ? std::move(items_[i].packed) : std::vector<std::byte>();
         return {};
@@ -511,7 +462,7 @@ class Develop {
                 "{} frames are missing {} {}: the stream holds the nearest; --gaps stop refuses such sequences",
                 missing, where, shown(i)));
         for (long long held = 0; held < missing; ++held)
-            if (Result<> done = stream_->write(packed, items_[i].extent, shown(i)); !done) return done;
+            DARKROOM_TRY(stream_->write(packed, items_[i].extent, shown(i)));
         return {};
     }
 
@@ -599,8 +550,7 @@ static Command add_develop(CommandFlags program, std::span<const darkroom::LookE
     options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); },
             [options]() -> Result<> {
-                const Result<Job> job = job_of(*options, options->frame.eyes().front());
-                if (!job) return failure(job.error());
+                DARKROOM_TRY(job_of(*options, options->frame.eyes().front()));
                 return {};
             }};
 }

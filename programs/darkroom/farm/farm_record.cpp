@@ -131,10 +131,9 @@ FarmJob job_of(const Json& json) {
 
 template <typename Read>
 auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Json()))> {
-    const auto bytes = darkroom::read_file(path, {.max_size = max_bytes});
-    if (!bytes) return failure(bytes.error());
+    DARKROOM_TRY_VALUE(const auto bytes, darkroom::read_file(path, {.max_size = max_bytes}));
     std::string problem = "is not JSON";
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (const std::optional<Json> json = Json::parse(text)) try {
             const Json* const found = json->find("format");
             if (found == nullptr || !found->is_number() || found->number() != format)
@@ -249,16 +248,14 @@ Result<std::optional<FarmJob>> read_job(const fs::path& folder) {
         return darkroom::machine_error(
             fmt::format("{}: cannot be opened: {}", printable((folder / job_file).string()), error.message()));
     if (!is_there) return std::optional<FarmJob>();
-    Result<FarmJob> job = read(folder / job_file, job_of);
-    if (!job) return failure(std::move(job));
-    return std::optional<FarmJob>(std::move(*job));
+    DARKROOM_TRY_VALUE(FarmJob job, read(folder / job_file, job_of));
+    return std::optional<FarmJob>(std::move(job));
 }
 
 Result<std::vector<ChunkRecord>> read_records(const fs::path& folder) {
-    const Result<std::vector<fs::path>> files = record_files(folder);
-    if (!files) return failure(files.error());
+    DARKROOM_TRY_VALUE(const std::vector<fs::path> files, record_files(folder));
     std::vector<ChunkRecord> out;
-    for (const fs::path& file : *files) {
+    for (const fs::path& file : files) {
         Result<ChunkRecord> record = read(file, record_of);
         if (record)
             out.push_back(std::move(*record));

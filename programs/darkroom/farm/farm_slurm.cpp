@@ -69,7 +69,7 @@ Result<std::string> directives(const SlurmOptions& options, std::size_t chunks) 
     std::string out = fmt::format("#SBATCH --job-name=darkroom\n#SBATCH --array=0-{}\n", chunks - 1);
     out += "#SBATCH --requeue\n#SBATCH --output=/dev/null\n";
     std::size_t cpus = 0;
-    if (Result<> done = options.cpus.read_to(cpus); !done) return failure(std::move(done));
+    DARKROOM_TRY(options.cpus.read_to(cpus));
     if (cpus > 0) out += fmt::format("#SBATCH --cpus-per-task={}\n", cpus);
     const std::array<std::pair<const char*, const std::string&>, 4> values{{{"--partition", options.partition},
                                                                             {"--time", options.time},
@@ -90,8 +90,7 @@ Result<std::string> directives(const SlurmOptions& options, std::size_t chunks) 
 
 Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
                               const std::vector<std::string>& chunks) {
-    const Result<std::string> head = directives(options, chunks.size());
-    if (!head) return failure(head.error());
+    DARKROOM_TRY_VALUE(const std::string head, directives(options, chunks.size()));
     if (options.program.find('\n') != std::string::npos)
         return user_error(
             fmt::format("--program {}: holds a line break; allowed is one line", printable(options.program)));
@@ -104,7 +103,7 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
     return fmt::format(
         "#!/bin/bash\n{}set -e\ncd -- {}\nmkdir -p -- {}\nchunks=({})\nchunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
         "exec >>{}/\"$chunk.log\" 2>&1\n{} farm task --frames \"$chunk\"{} {}\n",
-        *head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program,
+        head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program,
         darkroom::ConfinedProcess::allows_unconfined() ? " --allow-unconfined" : "", shell_quoted(options.work.task()));
 }
 
@@ -152,8 +151,7 @@ Result<std::string> submit(const fs::path& folder, const std::string& script) {
         return darkroom::machine_error(
             fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
     const fs::path file = fs::absolute(folder / "job.sh", error);
-    if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(script))); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY(darkroom::write_file(file, std::as_bytes(std::span(script))));
     Result<std::string> id = submit(file);
     if (!id) {
         fs::remove(file, error);
@@ -163,22 +161,18 @@ Result<std::string> submit(const fs::path& folder, const std::string& script) {
 }
 
 Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> named) {
-    const Result<FarmWork> work = options.work.work();
-    if (!work) return failure(work.error());
-    Result<FarmInputs> inputs = options.work.check(*work, named);
-    if (!inputs) return failure(std::move(inputs));
+    DARKROOM_TRY_VALUE(const FarmWork work, options.work.work());
+    DARKROOM_TRY_VALUE(FarmInputs inputs, options.work.check(work, named));
     std::size_t chunk = usual_chunk;
-    if (Result<> done = options.chunk.read_to(chunk); !done) return done;
-    FarmJob job{.arguments = options.work.task(), .inputs = std::move(*inputs), .names = work->names};
-    for (const FarmFrame& frame : work->frames) {
+    DARKROOM_TRY(options.chunk.read_to(chunk));
+    FarmJob job{.arguments = options.work.task(), .inputs = std::move(inputs), .names = work.names};
+    for (const FarmFrame& frame : work.frames) {
         job.frames.insert(frame.number);
         if (is_there(frame.picture)) job.done.insert(frame.number);
     }
-    const Result<std::optional<FarmJob>> last = read_job(work->folder);
-    if (!last) return failure(last.error());
-    if (*last)
-        if (Result<> done = check_same(*work, **last, job); !done) return done;
-    const std::vector<std::string> chunks = chunks_of(*work, job.done, chunk);
+    DARKROOM_TRY_VALUE(const std::optional<FarmJob> last, read_job(work.folder));
+    if (last) DARKROOM_TRY(check_same(work, *last, job));
+    const std::vector<std::string> chunks = chunks_of(work, job.done, chunk);
     if (chunks.empty()) {
         answer_unless_quiet(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));
         return {};
@@ -190,23 +184,19 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
             "--chunk {}: the frames of a chunk are too scattered for a file's name; choose a smaller number", chunk));
     if (chunks.size() > max_chunks)
         return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: --chunk {} is enough", chunk,
-                                      chunks.size(), max_chunks, (work->frames.size() + max_chunks - 1) / max_chunks));
-    const Result<std::string> script = script_of(options, *work, chunks);
-    if (!script) return failure(script.error());
+                                      chunks.size(), max_chunks, (work.frames.size() + max_chunks - 1) / max_chunks));
+    DARKROOM_TRY_VALUE(const std::string script, script_of(options, work, chunks));
     if (options.is_dry_run) {
-        answer(script->substr(0, script->size() - 1));
+        answer(script.substr(0, script.size() - 1));
         return {};
     }
-    if (*last)
-        if (Result<> done = check_is_over(*work, **last); !done) return done;
-    const Result<std::string> id = submit(work->folder, *script);
-    if (!id) return failure(id.error());
-    job.id = *id;
-    if (Result<> done = write_job(work->folder, job); !done)
+    if (last) DARKROOM_TRY(check_is_over(work, *last));
+    DARKROOM_TRY_VALUE(job.id, submit(work.folder, script));
+    if (Result<> done = write_job(work.folder, job); !done)
         return darkroom::machine_error(fmt::format("job {} was submitted, but {}", job.id, done.error().text));
     answer_unless_quiet(fmt::format("job {}: {} of {} pictures in {} chunks; darkroom farm status {}", job.id,
                                     job.frames.size() - job.done.size(), job.frames.size(), chunks.size(),
-                                    printable(work->folder.string())));
+                                    printable(work.folder.string())));
     return {};
 }
 

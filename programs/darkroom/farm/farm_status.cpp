@@ -63,16 +63,14 @@ FrameNumbers numbers_there(const fs::path& folder, const std::set<std::string>& 
 }
 
 Result<Status> status_of(const fs::path& folder) {
-    Result<std::optional<FarmJob>> job = read_job(folder);
-    if (!job) return failure(std::move(job));
-    Result<std::vector<ChunkRecord>> records = read_records(folder);
-    if (!records) return failure(std::move(records));
-    Status out{.folder = folder.string(), .chunks = std::move(*records)};
+    DARKROOM_TRY_VALUE(std::optional<FarmJob> job, read_job(folder));
+    DARKROOM_TRY_VALUE(std::vector<ChunkRecord> records, read_records(folder));
+    Status out{.folder = folder.string(), .chunks = std::move(records)};
     const std::set<std::string> files = files_beside(folder);
-    if (*job) {
-        out.job = (*job)->id;
-        out.frames = (*job)->frames;
-        out.done = numbers_there(folder, files, (*job)->names, out.frames, (*job)->done);
+    if (job) {
+        out.job = job->id;
+        out.frames = job->frames;
+        out.done = numbers_there(folder, files, job->names, out.frames, job->done);
     }
     // What tasks of an earlier job said of themselves is not what this one is about.
     if (!out.job.empty())
@@ -143,18 +141,16 @@ Result<std::vector<fs::path>> folders_in(fs::path folder) {
 
 /// Gives the exit code.
 Result<int> run(const StatusOptions& options) {
-    const Result<std::vector<fs::path>> folders = folders_in(options.folder);
-    if (!folders) return failure(folders.error());
+    DARKROOM_TRY_VALUE(const std::vector<fs::path> folders, folders_in(options.folder));
     Json documents = Json::array();
     int code = exit_ok;
-    for (const fs::path& folder : *folders) {
-        const Result<Status> status = status_of(folder);
-        if (!status) return failure(status.error());
-        if (status->done.size() < status->frames.size()) code = exit_incomplete;
+    for (const fs::path& folder : folders) {
+        DARKROOM_TRY_VALUE(const Status status, status_of(folder));
+        if (status.done.size() < status.frames.size()) code = exit_incomplete;
         if (options.is_json)
-            documents.push_back(document_of(*status));
+            documents.push_back(document_of(status));
         else
-            print(*status);
+            print(status);
     }
     if (options.is_json) answer((documents.size() == 1 ? documents.elements().front() : documents).dump(1));
     return code;

@@ -57,14 +57,14 @@ class Task {
     Task(const FarmFlags& flags, FarmWork work) : flags_(flags), work_(std::move(work)) {}
 
     Result<int> run() {
-        if (Result<> done = begin(); !done) return failure(std::move(done));
+        DARKROOM_TRY(begin());
         while (!is_done() && record_.tries < max_tries) {
             if (record_.tries > 0) std::this_thread::sleep_for(pause);
             ++record_.tries;
-            if (Result<> done = try_once(); !done) return failure(std::move(done));
+            DARKROOM_TRY(try_once());
         }
         record_.state = is_done() ? ChunkState::done : ChunkState::failed;
-        if (Result<> done = write(); !done) return failure(std::move(done));
+        DARKROOM_TRY(write());
         if (is_done()) return exit_ok;
         const FrameNumbers left = without(record_.frames, record_.done);
         complain(fmt::format("frames {} failed in {} tries: {}", shown(left), record_.tries,
@@ -76,11 +76,10 @@ class Task {
     [[nodiscard]] bool is_done() const { return record_.done.size() == record_.frames.size(); }
 
     Result<> begin() {
-        const Result<darkroom::FrameSet> frames = parse_frames(flags_.frames());
-        if (!frames) return failure(frames.error());
-        const std::vector<long long> numbers = frames->numbers();
-        record_.name = frames->is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
-                                          : darkroom::frame_set_text(numbers);
+        DARKROOM_TRY_VALUE(const darkroom::FrameSet frames, parse_frames(flags_.frames()));
+        const std::vector<long long> numbers = frames.numbers();
+        record_.name = frames.is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
+                                         : darkroom::frame_set_text(numbers);
         record_.names = work_.names;
         record_.node = node_name();
         record_.job = job_name();
@@ -104,12 +103,11 @@ class Task {
         if (darkroom::ConfinedProcess::allows_unconfined()) arguments.emplace_back("--allow-unconfined");
         // Where this process is killed, nobody sends a signal on: that one asks to get it.
         ::setenv(task_of_farm, std::to_string(::getpid()).c_str(), 1);
-        const Result<ProcessOutcome> outcome = run_process(arguments, ProcessOutput::Told);
-        if (!outcome) return failure(outcome.error());
+        DARKROOM_TRY_VALUE(const ProcessOutcome outcome, run_process(arguments, ProcessOutput::Told));
         record_.done = numbers_there(work_);
-        record_.errors = outcome->errors;
-        if (outcome->code > 128) record_.errors.push_back(fmt::format("ended by signal {}", outcome->code - 128));
-        code_ = outcome->code == exit_user ? exit_user : exit_machine;
+        record_.errors = outcome.errors;
+        if (outcome.code > 128) record_.errors.push_back(fmt::format("ended by signal {}", outcome.code - 128));
+        code_ = outcome.code == exit_user ? exit_user : exit_machine;
         return write();
     }
 
@@ -129,11 +127,10 @@ class Task {
 
 /// What a job of these arguments was submitted with must be what its tasks read.
 Result<> check_submitted(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
-    const Result<std::optional<FarmJob>> job = read_job(work.folder);
-    if (!job) return failure(job.error());
-    if (!*job || !has_arguments(**job, flags.task())) return {};
+    DARKROOM_TRY_VALUE(const std::optional<FarmJob> job, read_job(work.folder));
+    if (!job || !has_arguments(*job, flags.task())) return {};
     const Result<FarmInputs> inputs = flags.check(work, named);
-    return inputs ? check_inputs(work.folder, **job, *inputs) : failure(inputs.error());
+    return inputs ? check_inputs(work.folder, *job, *inputs) : failure(inputs.error());
 }
 
 int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {

@@ -109,37 +109,34 @@ Result<std::vector<FarmFrame>> FarmFlags::frames_in(const std::optional<darkroom
         }
         return out;
     }
-    const Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
-    if (!inputs) return failure(inputs.error());
+    DARKROOM_TRY_VALUE(const std::vector<darkroom::NumberedFile> inputs,
+                       darkroom::expand_inputs(std::span(&input_, 1)));
     const bool is_folder = is_output_folder(out_);
-    for (const auto& [path, number] : *inputs)
+    for (const auto& [path, number] : inputs)
         if (!frames || frames->contains(number)) out.push_back({number, output_path(path, number, out_, is_folder)});
     if (out.empty())
         return user_error(
-            fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs->size()));
+            fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs.size()));
     std::ranges::sort(out, {}, &FarmFrame::number);
     return out;
 }
 
 Result<FarmWork> FarmFlags::work() const {
-    if (Result<> done = check_arguments(); !done) return failure(std::move(done));
+    DARKROOM_TRY(check_arguments());
     std::optional<darkroom::FrameSet> asked_for;
     if (!frames_.empty()) {
-        Result<darkroom::FrameSet> parsed = parse_frames(frames_);
-        if (!parsed) return failure(std::move(parsed));
-        asked_for = std::move(*parsed);
+        DARKROOM_TRY_VALUE(asked_for, parse_frames(frames_));
     }
-    Result<std::vector<FarmFrame>> frames = frames_in(asked_for);
-    if (!frames) return failure(std::move(frames));
-    if (frames->size() > max_frames)
+    DARKROOM_TRY_VALUE(std::vector<FarmFrame> frames, frames_in(asked_for));
+    if (frames.size() > max_frames)
         return user_error(fmt::format("{}: {} frames, a farm takes at most {}; --frames A-B chooses some",
-                                      printable(input_), frames->size(), max_frames));
-    const fs::path picture = frames->front().picture, folder = picture.parent_path();
+                                      printable(input_), frames.size(), max_frames));
+    const fs::path picture = frames.front().picture, folder = picture.parent_path();
     const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
-    if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));
+    DARKROOM_TRY(check_folder(folder, missing));
     FarmNames names{.input = input_, .output = out_, .is_folder = is_output_folder(out_)};
     const fs::path records = farm_folder(names.pictures(0).front(), names.pictures(9).front());
-    return FarmWork{.frames = std::move(*frames),
+    return FarmWork{.frames = std::move(frames),
                     .names = std::move(names),
                     .folder = records,
                     .is_range = !asked_for || asked_for->is_range()};
@@ -152,8 +149,7 @@ Result<FarmInputs> FarmFlags::check(const FarmWork& work, std::span<const darkro
     const CommandRow row = is_scene() ? render_command() : develop_command();
     const Command command = row.add({.program = trial.program(), .named = named}).front();
     const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
-    if (Result<> parsed = trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags); !parsed)
-        return failure(std::move(parsed));
+    DARKROOM_TRY(trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags));
     if (const std::vector<std::string> inputs = command.flags.typed("INPUT"); inputs.size() > 1)
         return user_error(fmt::format("unexpected '{}': allowed after -- are flags of {}", printable(inputs.back()),
                                       command.flags.name()));
@@ -163,12 +159,11 @@ Result<FarmInputs> FarmFlags::check(const FarmWork& work, std::span<const darkro
                 return user_error(
                     fmt::format("{}: such a file is code, --allow-custom-effects lets it run", printable(argument)));
     const darkroom::ReadRecord read;
-    if (Result<> done = command.check(); !done) return failure(std::move(done));
+    DARKROOM_TRY(command.check());
     FarmInputs out;
     for (const fs::path& file : std::set(read.files())) {
-        const auto content = darkroom::read_file(file);
-        if (!content) return failure(content.error());
-        out.emplace(printable(file.string()), darkroom::content_hash(*content).hex());
+        DARKROOM_TRY_VALUE(const auto content, darkroom::read_file(file));
+        out.emplace(printable(file.string()), darkroom::content_hash(content).hex());
     }
     return out;
 }

@@ -73,9 +73,8 @@ Result<darkroom::NewSize> parse_new_size(const std::string& text) {
     if (found == names.end())
         return user_error(fmt::format("--size {}: '{}' is not a way to resize{}", darkroom::printable(text),
                                       darkroom::printable(name), darkroom::alternatives(name, names)));
-    const Result<VkExtent2D> size = parse_size(text.substr(0, colon));
-    if (!size) return failure(size.error());
-    return darkroom::NewSize{size->width, size->height, static_cast<darkroom::Sizing>(found - names.begin())};
+    DARKROOM_TRY_VALUE(const VkExtent2D size, parse_size(text.substr(0, colon)));
+    return darkroom::NewSize{size.width, size.height, static_cast<darkroom::Sizing>(found - names.begin())};
 }
 
 Result<darkroom::SampleKind> parse_bits(const std::string& text) {

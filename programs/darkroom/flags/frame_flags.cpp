@@ -53,10 +53,9 @@ std::vector<std::string> FrameFlags::eyes() const {
 
 Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configuration, const std::string& eye) const {
     darkroom::FrameOptions out{.view = eye, .is_depth_inverse = is_depth_inverse_, .keeps_overscan = keeps_overscan};
-    if (Result<> done = depth_scale_.read_to(out.depth_scale); !done) return failure(std::move(done));
-    if (Result<> done = fov_.read_to(out.vertical_field_of_view); !done) return failure(std::move(done));
-    for (const std::string& map : maps_)
-        if (Result<> added = darkroom::add_mapping(out.names, map); !added) return failure(std::move(added));
+    DARKROOM_TRY(depth_scale_.read_to(out.depth_scale));
+    DARKROOM_TRY(fov_.read_to(out.vertical_field_of_view));
+    for (const std::string& map : maps_) DARKROOM_TRY(darkroom::add_mapping(out.names, map));
     if (!normals_space_.empty()) {
         if (normals_space_ != "world" && normals_space_ != "view")
             return darkroom::user_error(
@@ -70,13 +69,9 @@ Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configurat
     }
     out.camera_file = camera_;
     // What is wrong with it is told once, and before any work.
-    if (!camera_.empty() && !darkroom::has_number_pattern(camera_))
-        if (const auto camera = darkroom::read_camera(camera_); !camera) return failure(camera.error());
+    if (!camera_.empty() && !darkroom::has_number_pattern(camera_)) DARKROOM_TRY(darkroom::read_camera(camera_));
     if (!input_space_.empty() && !configuration.empty()) {
-        Result<std::shared_ptr<const darkroom::ColorChain>> chain =
-            darkroom::space_of_configuration(configuration, input_space_);
-        if (!chain) return failure(std::move(chain));
-        out.input_chain = std::move(*chain);
+        DARKROOM_TRY_VALUE(out.input_chain, darkroom::space_of_configuration(configuration, input_space_));
     } else if (!input_space_.empty()) {
         Result<darkroom::InputSpace> space = darkroom::find_input_space(input_space_);
         if (!space)

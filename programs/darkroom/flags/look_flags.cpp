@@ -175,11 +175,10 @@ Result<> LookFlags::add_custom_effects(Look& look) const {
     for (const std::string& name : effect_files_) {
         if (has_no_custom_effects_)
             return user_error(fmt::format("--effect {}: {} refuses it", darkroom::printable(name), no_custom_effects));
-        Result<darkroom::LookEntry> entry = darkroom::custom_entry(name);
-        if (!entry) return failure(std::move(entry));
-        if (const Result<> shared = darkroom::share_effect(look, *entry); !shared)
+        DARKROOM_TRY_VALUE(darkroom::LookEntry entry, darkroom::custom_entry(name));
+        if (const Result<> shared = darkroom::share_effect(look, entry); !shared)
             return user_error(fmt::format("{}: {}", darkroom::printable(name), shared.error().text));
-        look.entries.push_back(std::move(*entry));
+        look.entries.push_back(std::move(entry));
     }
     return {};
 }
@@ -265,20 +264,18 @@ bool LookFlags::change_anything() const {
 }
 
 Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
-    if (Result<> done = lay_layers(look); !done) return done;
-    if (Result<> done = set_ui(look); !done) return done;
-    if (Result<> done = set_order(look); !done) return done;
+    DARKROOM_TRY(lay_layers(look));
+    DARKROOM_TRY(set_ui(look));
+    DARKROOM_TRY(set_order(look));
     // They have no place before it is known what is on, but values already.
-    if (Result<> done = add_custom_effects(look); !done) return done;
-    const Result<std::vector<LookOverride>> values = overrides();
-    if (!values) return failure(values.error());
-    if (Result<> done = darkroom::override_look(look, *values, options(nullptr)); !done) return done;
+    DARKROOM_TRY(add_custom_effects(look));
+    DARKROOM_TRY_VALUE(const std::vector<LookOverride> values, overrides());
+    DARKROOM_TRY(darkroom::override_look(look, values, options(nullptr)));
     const auto first = look.entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
     const std::vector<darkroom::LookEntry> customs(first, look.entries.end());
     look.entries.erase(first, look.entries.end());
     if (!keeps_what_is_off) drop_what_is_off(look);
-    for (const darkroom::LookEntry& entry : customs)
-        if (Result<> done = darkroom::place_entry(look, entry); !done) return done;
+    for (const darkroom::LookEntry& entry : customs) DARKROOM_TRY(darkroom::place_entry(look, entry));
     return {};
 }
 
@@ -295,7 +292,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& path, const Look& with
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
     resolve_ui(*look, path.parent_path());
-    if (Result<> done = change(*look, !events.empty()); !done) return failure(std::move(done));
+    DARKROOM_TRY(change(*look, !events.empty()));
     if (is_off_) *look = darkroom::switched_off(*look);
     return look;
 }

@@ -3,12 +3,12 @@
 // A flag that takes one number of a range. The command line's parser hands over its text, so that a wrong one is
 // refused in the words that every other value is: flag, value, what is allowed.
 
-#include <darkroom/result.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
+#include "core/try.hpp"
 #include "flags.hpp"
 
 namespace app {
@@ -36,13 +36,12 @@ class NumberFlag {
     /// Changes `to` only if the flag was given. What a whole number is written to holds every one of the range.
     template <typename T>
     [[nodiscard]] darkroom::Result<> read_to(T& to) const {
-        const darkroom::Result<std::optional<double>> number = value();
-        if (!number) return failure(number.error());
-        if (!*number) return {};
+        DARKROOM_TRY_VALUE(const std::optional<double> number, value());
+        if (!number) return {};
         if constexpr (std::is_arithmetic_v<T>)
-            to = static_cast<T>(**number);
+            to = static_cast<T>(*number);
         else
-            to = static_cast<typename T::value_type>(**number);
+            to = static_cast<typename T::value_type>(*number);
         return {};
     }
 

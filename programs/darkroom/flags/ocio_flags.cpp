@@ -24,7 +24,7 @@ void OcioFlags::add_to(CommandFlags command, bool has_view) {
 
 darkroom::Result<> OcioFlags::check(bool has_input_space) const {
     if (configuration.empty() || has_display() || has_input_space) return {};
-    if (const auto read = darkroom::check_configuration(configuration); !read) return failure(read.error());
+    DARKROOM_TRY(darkroom::check_configuration(configuration));
     return user_error("--ocio: needs --input-space or --display, which use it");
 }
 

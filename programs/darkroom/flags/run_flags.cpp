@@ -47,8 +47,7 @@ Result<std::optional<darkroom::OutputSpace>> SpaceFlags::space() const {
     const bool has_peak = space->integers && space->integers->peak_nits > space->integers->white_nits;
     if (peak_.is_given() && !has_peak)
         return user_error(fmt::format("--output-peak: works for pq and hlg, and not for {}", space->name));
-    if (has_peak)
-        if (Result<> done = peak_.read_to(space->integers->peak_nits); !done) return failure(std::move(done));
+    if (has_peak) DARKROOM_TRY(peak_.read_to(space->integers->peak_nits));
     return std::optional(std::move(*space));
 }
 
@@ -80,17 +79,11 @@ Result<darkroom::WriteOptions> WriteFlags::options() const {
     darkroom::WriteOptions out{
         .alpha = has_alpha(), .has_alpha_of_glow = alpha_ == "glow", .chroma = chroma_, .compression = compression_};
     if (bits_) {
-        const Result<darkroom::SampleKind> bits = parse_bits(*bits_);
-        if (!bits) return failure(bits.error());
-        out.samples = *bits;
+        DARKROOM_TRY_VALUE(out.samples, parse_bits(*bits_));
     }
-    Result<std::optional<darkroom::OutputSpace>> space = space_.space();
-    if (!space) return failure(std::move(space));
-    out.space = std::move(*space);
-    if (Result<> done = quality_.read_to(out.quality); !done) return failure(std::move(done));
-    Result<std::shared_ptr<const darkroom::ColorChain>> view = ocio.view();
-    if (!view) return failure(std::move(view));
-    out.view = std::move(*view);
+    DARKROOM_TRY_VALUE(out.space, space_.space());
+    DARKROOM_TRY(quality_.read_to(out.quality));
+    DARKROOM_TRY_VALUE(out.view, ocio.view());
     return out;
 }
 
@@ -148,7 +141,7 @@ void RunFlags::add_to(CommandFlags command) {
 
 Result<std::size_t> RunFlags::jobs() const {
     std::size_t out = 0;
-    if (Result<> done = jobs_.read_to(out); !done) return failure(std::move(done));
+    DARKROOM_TRY(jobs_.read_to(out));
     return out;
 }
 

@@ -87,7 +87,7 @@ Result<> write_all(std::span<const CommandText> pages, std::span<const CommandTe
     for (const CommandText& command : pages) {
         const std::string text = page_of(command, all);
         const std::filesystem::path path = std::filesystem::path(folder) / (page_name(command) + ".1");
-        if (Result<> done = darkroom::write_file(path, std::as_bytes(std::span(text))); !done) return done;
+        DARKROOM_TRY(darkroom::write_file(path, std::as_bytes(std::span(text))));
     }
     return {};
 }

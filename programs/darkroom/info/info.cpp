@@ -92,17 +92,15 @@ Result<Head> head_of(const fs::path& path) {
     const std::string shown = printable(path.string());
     std::error_code error;
     if (!fs::exists(path, error)) return user_error(fmt::format("{}: there is no such file", shown));
-    const auto start = darkroom::read_file(path, {.max_size = 4096, .takes_start = true});
-    if (!start) return failure(start.error());
-    return Head{.start = std::string(reinterpret_cast<const char*>(start->data()), start->size()),
+    DARKROOM_TRY_VALUE(const auto start, darkroom::read_file(path, {.max_size = 4096, .takes_start = true}));
+    return Head{.start = std::string(reinterpret_cast<const char*>(start.data()), start.size()),
                 .extension = darkroom::lower(path.extension().string())};
 }
 
 Result<Json> document_of(const fs::path& path, const Options& options) {
-    const Result<Head> head = head_of(path);
-    if (!head) return failure(head.error());
+    DARKROOM_TRY_VALUE(const Head head, head_of(path));
     const auto kinds = kinds_of(options);
-    const auto kind = std::ranges::find_if(kinds, [&](const Kind& known) { return known.is(*head); });
+    const auto kind = std::ranges::find_if(kinds, [&](const Kind& known) { return known.is(head); });
     if (kind != kinds.end()) return kind->tell(path);
     std::vector<std::string_view> names;
     for (const Kind& known : kinds) names.push_back(known.name);

@@ -5,10 +5,10 @@
 
 #include <cstdint>
 #include <darkroom/look.hpp>
-#include <darkroom/result.hpp>
 #include <filesystem>
 #include <string>
 
+#include "core/try.hpp"
 #include "programs/darkroom/run/json.hpp"
 #include "scene/named_files.hpp"
 

@@ -73,13 +73,10 @@ Json entries_of(const darkroom::Look& look) {
 
 Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects,
                   darkroom::scene::NamedFiles named_files) {
-    const Result<std::string> text = darkroom::scene::reading::read_scene_text(path);
-    if (!text) return failure(text.error());
+    DARKROOM_TRY_VALUE(const std::string text, darkroom::scene::reading::read_scene_text(path));
     const std::string shown = path.string();
-    const Result<::toml::table> file = darkroom::parse_toml(*text, shown);
-    if (!file) return failure(file.error());
-    const bool is_scene = darkroom::scene::reading::is_scene(*file),
-               has_look = darkroom::scene::reading::has_look(*file);
+    DARKROOM_TRY_VALUE(const ::toml::table file, darkroom::parse_toml(text, shown));
+    const bool is_scene = darkroom::scene::reading::is_scene(file), has_look = darkroom::scene::reading::has_look(file);
     if (!is_scene && !has_look)
         return darkroom::user_error(fmt::format(
             "{}: is neither a scene nor a look: it has no table [entities], [post_process] or [[stack]], nor any other "
@@ -87,23 +84,21 @@ Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects,
             darkroom::printable(shown)));
     Json out{{"kind", is_scene ? "scene" : "look"}};
     if (is_scene) {
-        const Result<Json> found = scene(*text, path, named_files);
-        if (!found) return found;
-        out.update(*found);
+        DARKROOM_TRY_VALUE(const Json found, scene(text, path, named_files));
+        out.update(found);
     }
     if (!has_look) return out;
     std::vector<std::string> warnings;
-    const Result<darkroom::Look> look = darkroom::parse_look(*text, shown,
-                                                             {.warnings = &warnings,
-                                                              .is_scene = is_scene,
-                                                              .allows_custom_effects = allows_custom_effects,
-                                                              .load_resource = darkroom::load_resource_file,
-                                                              .folder = path.parent_path()});
-    if (!look) return failure(look.error());
+    DARKROOM_TRY_VALUE(const darkroom::Look look, darkroom::parse_look(text, shown,
+                                                                       {.warnings = &warnings,
+                                                                        .is_scene = is_scene,
+                                                                        .allows_custom_effects = allows_custom_effects,
+                                                                        .load_resource = darkroom::load_resource_file,
+                                                                        .folder = path.parent_path()}));
     if (is_scene)
-        out["look"] = look_of(*look);
+        out["look"] = look_of(look);
     else
-        out.update(look_of(*look));
+        out.update(look_of(look));
     for (std::string& warning : warnings) out["warnings"].push_back(std::move(warning));
     return out;
 }

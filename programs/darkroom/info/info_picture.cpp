@@ -56,9 +56,8 @@ Result<Json> layers_of(LayerFile& file) {
     const auto parts = file.decoder().parts();
     std::vector<std::vector<darkroom::SampleRange>> ranges;
     for (std::size_t part = 0; part < parts.size(); ++part) {
-        Result<std::vector<darkroom::SampleRange>> found = file.ranges(part);
-        if (!found) return failure(std::move(found));
-        ranges.push_back(std::move(*found));
+        DARKROOM_TRY_VALUE(std::vector<darkroom::SampleRange> found, file.ranges(part));
+        ranges.push_back(std::move(found));
     }
     Json out = Json::array();
     for (const darkroom::FileLayer& layer :
@@ -79,19 +78,17 @@ Result<Json> layers_of(LayerFile& file) {
 
 /// What the file says of itself, whatever it is for.
 Result<Json> file_of(const std::filesystem::path& path) {
-    Result<LayerFile> file = LayerFile::open(path);
-    if (!file) return failure(std::move(file));
-    const auto parts = file->decoder().parts();
+    DARKROOM_TRY_VALUE(LayerFile file, LayerFile::open(path));
+    const auto parts = file.decoder().parts();
     std::error_code ignored;
     Json out{{"kind", "picture"},
-             {"format", darkroom::name_of(file->decoder().kind())},
+             {"format", darkroom::name_of(file.decoder().kind())},
              {"bytes", std::filesystem::file_size(path, ignored)},
              {"size", {parts.front().display_width, parts.front().display_height}},
              {"parts", parts_of(parts)}};
-    Result<Json> layers = layers_of(*file);
-    if (!layers) return failure(std::move(layers));
-    out["layers"] = std::move(*layers);
-    if (file->layers().size() > max_layers) out["more_layers"] = file->layers().size() - max_layers;
+    DARKROOM_TRY_VALUE(Json layers, layers_of(file));
+    out["layers"] = std::move(layers);
+    if (file.layers().size() > max_layers) out["more_layers"] = file.layers().size() - max_layers;
     return out;
 }
 
@@ -149,11 +146,10 @@ darkroom::CompileDesc compile_desc(const FrameFile& frame) {
 Result<Json> default_look_of(const FrameFile& frame) {
     darkroom::Device device = darkroom::Device::assumed();
     darkroom::Composer composer(device);
-    if (Result<> done = darkroom::apply(darkroom::default_look(), composer); !done) return failure(std::move(done));
-    const Result<darkroom::Plan> plan = composer.plan(compile_desc(frame));
-    if (!plan) return failure(plan.error());
+    DARKROOM_TRY(darkroom::apply(darkroom::default_look(), composer));
+    DARKROOM_TRY_VALUE(const darkroom::Plan plan, composer.plan(compile_desc(frame)));
     Json left_out = Json::array(), left_out_if_on = Json::array();
-    for (const std::string& text : plan->left_out) {
+    for (const std::string& text : plan.left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         const bool is_on = entry && composer.desc(*entry)->enabled && !composer.info(*entry)->is_in_traced_light;
         (is_on ? left_out : left_out_if_on).push_back(text);
@@ -201,9 +197,8 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
 }  // namespace
 
 Result<Json> picture(const std::filesystem::path& path) {
-    Result<Json> out = file_of(path);
-    if (!out) return out;
-    if (Result<> done = add_frame(path, *out); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(Json out, file_of(path));
+    DARKROOM_TRY(add_frame(path, out));
     return out;
 }
 

@@ -178,57 +178,55 @@ Json particles_of(const scenes::Scene& scene) {
 }  // namespace
 
 Result<Json> model(const std::filesystem::path& path, scenes::NamedFiles named_files) {
-    const Result<scenes::Model> model = scenes::read_model(path, scenes::Budget(), named_files);
-    if (!model) return failure(model.error());
+    DARKROOM_TRY_VALUE(const scenes::Model model, scenes::read_model(path, scenes::Budget(), named_files));
     Counts stored;
     std::size_t targets = 0, joints = 0;
-    for (const scenes::Mesh& mesh : model->meshes) {
+    for (const scenes::Mesh& mesh : model.meshes) {
         stored.add(mesh);
         for (const scenes::Primitive& primitive : mesh.primitives) targets += primitive.targets.size();
     }
-    for (const scenes::Skin& skin : model->skins) joints += skin.joints.size();
+    for (const scenes::Skin& skin : model.skins) joints += skin.joints.size();
     Json out{{"kind", "model"},
-             {"name", model->name},
-             {"nodes", model->nodes.size()},
-             {"meshes", model->meshes.size()},
+             {"name", model.name},
+             {"nodes", model.nodes.size()},
+             {"meshes", model.meshes.size()},
              {"primitives", stored.primitives},
              {"triangles", stored.triangles},
-             {"drawn_triangles", drawn(*model).triangles},
+             {"drawn_triangles", drawn(model).triangles},
              {"vertices", stored.vertices},
              {"morph_targets", targets},
-             {"skins", model->skins.size()},
+             {"skins", model.skins.size()},
              {"joints", joints},
-             {"materials", materials_of(*model)},
-             {"variants", model->variants},
-             {"textures", textures_of(model->images)},
-             {"animations", animations_of(*model)},
-             {"cameras", cameras_of(*model)},
-             {"lights", model_lights_of(*model)}};
-    if (!model->warnings.empty()) out["warnings"] = model->warnings;
+             {"materials", materials_of(model)},
+             {"variants", model.variants},
+             {"textures", textures_of(model.images)},
+             {"animations", animations_of(model)},
+             {"cameras", cameras_of(model)},
+             {"lights", model_lights_of(model)}};
+    if (!model.warnings.empty()) out["warnings"] = model.warnings;
     return out;
 }
 
 Result<Json> scene(const std::string& text, const std::filesystem::path& path, scenes::NamedFiles named_files) {
     std::vector<std::string> warnings;
-    const Result<scenes::Scene> scene =
-        scenes::parse_scene(text, path, {.warnings = &warnings, .named_files = named_files});
-    if (!scene) return failure(scene.error());
-    const scenes::Assets assets = scenes::load_assets(*scene);
+    DARKROOM_TRY_VALUE(const scenes::Scene scene,
+                       scenes::parse_scene(text, path, {.warnings = &warnings, .named_files = named_files}));
+    const scenes::Assets assets = scenes::load_assets(scene);
     const auto count = [&](auto member) {
-        return std::ranges::count_if(scene->entities, [&](const scenes::Entity& e) { return (e.*member).has_value(); });
+        return std::ranges::count_if(scene.entities, [&](const scenes::Entity& e) { return (e.*member).has_value(); });
     };
-    Json out{{"name", scene->name},
-             {"description", scene->description},
-             {"time", scene->time},
-             {"entities", scene->entities.size()},
+    Json out{{"name", scene.name},
+             {"description", scene.description},
+             {"time", scene.time},
+             {"entities", scene.entities.size()},
              {"boxes", count(&scenes::Entity::bounds)},
              {"sprites", count(&scenes::Entity::sprite)},
-             {"camera", camera_of(scene->camera)},
-             {"environment", environment_of(scene->environment, assets)},
-             {"models", scene_models_of(*scene, assets)},
+             {"camera", camera_of(scene.camera)},
+             {"environment", environment_of(scene.environment, assets)},
+             {"models", scene_models_of(scene, assets)},
              {"textures", textures_of(assets.images)},
-             {"lights", scene_lights_of(*scene)},
-             {"particles", particles_of(*scene)}};
+             {"lights", scene_lights_of(scene)},
+             {"particles", particles_of(scene)}};
     warnings.insert(warnings.end(), assets.warnings.begin(), assets.warnings.end());
     if (!warnings.empty()) out["warnings"] = warnings;
     return out;

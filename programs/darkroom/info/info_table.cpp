@@ -33,9 +33,8 @@ Result<Json> table(const std::filesystem::path& path) {
     const bool is_named = darkroom::is_table_name(path);
     Result<darkroom::FoundTable> found = [&]() -> Result<darkroom::FoundTable> {
         if (is_named) return darkroom::read_table_file(path);
-        auto file = darkroom::read_cube(path);
-        if (!file) return failure(std::move(file));
-        return darkroom::FoundTable{.file = std::move(*file), .format = ".cube"};
+        DARKROOM_TRY_VALUE(auto file, darkroom::read_cube(path));
+        return darkroom::FoundTable{.file = std::move(file), .format = ".cube"};
     }();
     if (!found) return failure(std::move(found));
     const darkroom::ColorTable& table = found->file.table;

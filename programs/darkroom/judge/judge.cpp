@@ -82,12 +82,11 @@ bool is_of_display(const FrameFile& frame) {
 }
 
 Result<ShownCodes> codes_of(const fs::path& path) {
-    const Result<FrameFile> frame =
-        darkroom::read_frame(path, {.has_depth = false, .has_normals = false, .has_velocity = false});
-    if (!frame) return failure(frame.error());
-    if (!is_of_display(*frame)) return darkroom::codes_of_light(frame->color);
+    DARKROOM_TRY_VALUE(const FrameFile frame,
+                       darkroom::read_frame(path, {.has_depth = false, .has_normals = false, .has_velocity = false}));
+    if (!is_of_display(frame)) return darkroom::codes_of_light(frame.color);
     // Frames are light, whatever the file: sRGB's curve brings back the codes.
-    darkroom::Picture encoded = frame->color;
+    darkroom::Picture encoded = frame.color;
     for (std::size_t i = 0; i < encoded.pixels.size(); ++i)
         if (i % 4 != 3) encoded.pixels[i] = darkroom::srgb_encode(encoded.pixels[i]);
     return darkroom::codes_of_display(encoded);
@@ -111,12 +110,10 @@ class Judging {
     explicit Judging(const Options& options) : options_(options) {}
 
     Result<Judgement> run() {
-        if (Result<> done = prepare(); !done) return failure(std::move(done));
-        for (const long long number : numbers_)
-            if (Result<> done = add(number); !done) return failure(std::move(done));
+        DARKROOM_TRY(prepare());
+        for (const long long number : numbers_) DARKROOM_TRY(add(number));
         out_.verdict = judge_.verdict();
-        if (!options_.folder.empty())
-            if (Result<> done = write_report(); !done) return failure(std::move(done));
+        if (!options_.folder.empty()) DARKROOM_TRY(write_report());
         return std::move(out_);
     }
 
@@ -124,17 +121,11 @@ class Judging {
     Result<> prepare() {
         out_.truth = options_.truth;
         out_.test = options_.test;
-        Result<CapturedTruth> truth = read_capture(options_.truth);
-        if (!truth) return failure(std::move(truth));
-        truth_ = std::move(*truth);
-        Result<std::map<long long, fs::path>> pictures = pictures_of(options_.test);
-        if (!pictures) return failure(std::move(pictures));
-        pictures_ = std::move(*pictures);
+        DARKROOM_TRY_VALUE(truth_, read_capture(options_.truth));
+        DARKROOM_TRY_VALUE(pictures_, pictures_of(options_.test));
         std::optional<darkroom::FrameSet> asked;
         if (options_.frames) {
-            Result<darkroom::FrameSet> set = parse_frames(*options_.frames);
-            if (!set) return failure(std::move(set));
-            asked = std::move(*set);
+            DARKROOM_TRY_VALUE(asked, parse_frames(*options_.frames));
         }
         for (const long long number : truth_.frames) {
             if (asked && !asked->contains(number)) continue;
@@ -146,13 +137,11 @@ class Judging {
         if (numbers_.empty())
             return user_error(fmt::format("--frames {}: the truth has none of them", printable(*options_.frames)));
         if (options_.edge) {
-            Result<Window> window = parse_window(*options_.edge);
-            if (!window) return failure(std::move(window));
-            edge_ = *window;
+            DARKROOM_TRY_VALUE(edge_, parse_window(*options_.edge));
         }
         if (options_.folder.empty()) return {};
         // A page of an older judgement goes first: what is there is whole, or is not there.
-        if (Result<> done = check_folder(options_.folder, MissingFolders::Made); !done) return done;
+        DARKROOM_TRY(check_folder(options_.folder, MissingFolders::Made));
         std::error_code error;
         for (const char* name : {"index.html", "judge.json"}) fs::remove(fs::path(options_.folder) / name, error);
         return {};
@@ -160,23 +149,20 @@ class Judging {
 
     Result<> add(long long number) {
         const fs::path truth_path = darkroom::numbered(truth_.folder / truth_.files, number);
-        const Result<FrameFile> truth = darkroom::read_frame(truth_path, {.has_normals = false});
-        if (!truth) return failure(truth.error());
-        const ShownCodes truth_codes = darkroom::codes_of_light(truth->color);
+        DARKROOM_TRY_VALUE(const FrameFile truth, darkroom::read_frame(truth_path, {.has_normals = false}));
+        const ShownCodes truth_codes = darkroom::codes_of_light(truth.color);
         const fs::path& test_path = pictures_.at(number);
-        const Result<ShownCodes> test_codes = codes_of(test_path);
-        if (!test_codes) return failure(test_codes.error());
-        if (test_codes->width != truth_codes.width || test_codes->height != truth_codes.height)
+        DARKROOM_TRY_VALUE(const ShownCodes test_codes, codes_of(test_path));
+        if (test_codes.width != truth_codes.width || test_codes.height != truth_codes.height)
             return user_error(fmt::format("{}: is {}x{}, its truth is {}x{}", printable(test_path.string()),
-                                          test_codes->width, test_codes->height, truth_codes.width,
-                                          truth_codes.height));
-        const Result<darkroom::RegionMap> map = regions_.find(*truth, truth_codes);
+                                          test_codes.width, test_codes.height, truth_codes.width, truth_codes.height));
+        const Result<darkroom::RegionMap> map = regions_.find(truth, truth_codes);
         if (!map) return user_error(fmt::format("{}: {}", printable(truth_path.string()), map.error().text));
-        if (Result<> done = judge_.add(number, truth_codes, *test_codes, *map); !done) return done;
+        DARKROOM_TRY(judge_.add(number, truth_codes, test_codes, *map));
         out_.width = truth_codes.width;
         out_.height = truth_codes.height;
-        if (Result<> done = measure_edge(number, truth_codes, *test_codes); !done) return done;
-        return options_.folder.empty() ? Result<>() : write_pictures(number, truth_codes, *test_codes);
+        DARKROOM_TRY(measure_edge(number, truth_codes, test_codes));
+        return options_.folder.empty() ? Result<>() : write_pictures(number, truth_codes, test_codes);
     }
 
     /// Of the last frame, which has the longest history.
@@ -192,24 +178,18 @@ class Judging {
             return user_error(
                 fmt::format("--edge {}: of the {}: {}", printable(*options_.edge), whose, found.error().text));
         };
-        const auto of_truth = sharpness(truth, "truth");
-        if (!of_truth) return failure(of_truth.error());
-        const auto of_test = sharpness(test, "test");
-        if (!of_test) return failure(of_test.error());
-        out_.edge = Judgement::Edge{*of_truth, *of_test};
+        DARKROOM_TRY_VALUE(const auto of_truth, sharpness(truth, "truth"));
+        DARKROOM_TRY_VALUE(const auto of_test, sharpness(test, "test"));
+        out_.edge = Judgement::Edge{of_truth, of_test};
         return {};
     }
 
     Result<> write_pictures(long long number, const ShownCodes& truth, const ShownCodes& test) const {
         const darkroom::Picture a = picture_of(truth), b = picture_of(test);
-        const Result<darkroom::Comparison> compared = darkroom::compare(a, b);
-        if (!compared) return failure(compared.error());
+        DARKROOM_TRY_VALUE(const darkroom::Comparison compared, darkroom::compare(a, b));
         for (const auto& [kind, picture] :
-             {std::pair("truth", &a), std::pair("test", &b), std::pair("error", &compared->flip_map)})
-            if (Result<> done =
-                    darkroom::write_picture(fs::path(options_.folder) / picture_name(kind, number), *picture);
-                !done)
-                return done;
+             {std::pair("truth", &a), std::pair("test", &b), std::pair("error", &compared.flip_map)})
+            DARKROOM_TRY(darkroom::write_picture(fs::path(options_.folder) / picture_name(kind, number), *picture));
         return {};
     }
 
@@ -217,7 +197,7 @@ class Judging {
         const auto write = [&](const char* name, const std::string& text) {
             return darkroom::write_file(fs::path(options_.folder) / name, std::as_bytes(std::span(text)));
         };
-        if (Result<> done = write("judge.json", json_of(out_).dump(2) + "\n"); !done) return done;
+        DARKROOM_TRY(write("judge.json", json_of(out_).dump(2) + "\n"));
         return write("index.html", page_of(out_));
     }
 

@@ -51,14 +51,13 @@ CommandFlags add(CommandFlags lut, const char* name, const char* help, Output& o
 }
 
 Result<> convert(const std::string& from, const Output& to) {
-    if (Result<> done = check(to, {from}); !done) return done;
-    Result<darkroom::FoundTable> found = darkroom::read_table_file(from);
-    if (!found) return failure(std::move(found));
-    darkroom::TableFile& file = found->file;
+    DARKROOM_TRY(check(to, {from}));
+    DARKROOM_TRY_VALUE(darkroom::FoundTable found, darkroom::read_table_file(from));
+    darkroom::TableFile& file = found.file;
     if (file.title.empty()) file.title = std::filesystem::path(from).stem().string();
-    if (found->error)
+    if (found.error)
         file.comments.push_back(
-            fmt::format("Sampled from {}; largest difference on random colours: {:.6g}", found->format, *found->error));
+            fmt::format("Sampled from {}; largest difference on random colours: {:.6g}", found.format, *found.error));
     return write(to.path, file);
 }
 
@@ -78,13 +77,11 @@ Command add_convert(CommandFlags lut) {
 }
 
 Result<> export_to(const Output& to, const LookFlags& flags) {
-    const Result<darkroom::Look> look = flags.look();
-    if (!look) return failure(look.error());
-    if (Result<> done = check(to, flags.input_files()); !done) return done;
-    const Result<ExportedLook> exported = export_look(*look);
-    if (!exported) return failure(exported.error());
-    for (const std::string& line : exported->left_out) warn(fmt::format("left out: {}", line));
-    return write(to.path, exported->file);
+    DARKROOM_TRY_VALUE(const darkroom::Look look, flags.look());
+    DARKROOM_TRY(check(to, flags.input_files()));
+    DARKROOM_TRY_VALUE(const ExportedLook exported, export_look(look));
+    for (const std::string& line : exported.left_out) warn(fmt::format("left out: {}", line));
+    return write(to.path, exported.file);
 }
 
 Command add_export(CommandFlags lut, std::span<const darkroom::LookEntry> named) {

@@ -36,14 +36,13 @@ struct Moment {
 Result<ReferenceImage> developed(const Look& look, const ReferenceImage& picture, Domain target, bool encodes,
                                  const Moment& moment = {}) {
     darkroom::Composer composer(darkroom::Device::assumed());
-    if (Result<> done = apply(look, composer); !done) return failure(std::move(done));
-    auto out = run_reference(composer, {.color = &picture,
-                                        .time = moment.time,
-                                        .frame_index = moment.frame,
-                                        .target_domain = target,
-                                        .encodes_target = encodes});
-    if (!out) return failure(std::move(out));
-    return std::move(out->picture);
+    DARKROOM_TRY(apply(look, composer));
+    DARKROOM_TRY_VALUE(auto out, run_reference(composer, {.color = &picture,
+                                                          .time = moment.time,
+                                                          .frame_index = moment.frame,
+                                                          .target_domain = target,
+                                                          .encodes_target = encodes}));
+    return std::move(out.picture);
 }
 
 bool is_same(const Rgba& a, const Rgba& b) {
@@ -75,9 +74,8 @@ Result<std::string> obstacle(const LookEntry& entry) {
     const auto many = of(picture, {}), later = of(picture, {.time = 1.7, .frame = 41});
     if (!many || !later) return failure(many ? later.error() : many.error());
     for (std::size_t i = 0; i < picture.pixels.size(); i += 97) {
-        const auto one = of(ReferenceImage(1, 1, picture.pixels[i]), {});
-        if (!one) return failure(one.error());
-        if (!is_same(many->pixels[i], one->pixels[0]))
+        DARKROOM_TRY_VALUE(const auto one, of(ReferenceImage(1, 1, picture.pixels[i]), {}));
+        if (!is_same(many->pixels[i], one.pixels[0]))
             return "depends on the place in the picture, or on its surroundings";
     }
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -101,10 +99,10 @@ class Baker {
     [[nodiscard]] Result<std::vector<TableColor>> bake(const std::vector<TableColor>& light) const {
         ReferenceImage picture(static_cast<std::uint32_t>(light.size()), 1);
         for (std::size_t i = 0; i < light.size(); ++i) picture.pixels[i] = {light[i][0], light[i][1], light[i][2], 1};
-        const auto out = developed(look_, picture, is_scene_ ? Domain::SceneLinear : Domain::Encoded, true);
-        if (!out) return failure(out.error());
+        DARKROOM_TRY_VALUE(const auto out,
+                           developed(look_, picture, is_scene_ ? Domain::SceneLinear : Domain::Encoded, true));
         std::vector<TableColor> found;
-        for (const Rgba& color : out->pixels) {
+        for (const Rgba& color : out.pixels) {
             TableColor values{color.r, color.g, color.b};
             for (double& value : values) value = is_scene_ ? LogShaper::encode(value) : std::clamp(value, 0.0, 1.0);
             found.push_back(values);
@@ -124,13 +122,12 @@ Result<std::pair<double, double>> error_of(const darkroom::ColorTable& table, co
     std::vector<TableColor> given(20000), light = given;
     for (std::size_t n = 0; n < given.size(); ++n)
         for (std::size_t i = 0; i < 3; ++i) light[n][i] = LogShaper::decode(given[n][i] = unit(random));
-    const auto expected = baker.bake(light);
-    if (!expected) return failure(expected.error());
+    DARKROOM_TRY_VALUE(const auto expected, baker.bake(light));
     double largest = 0, sum = 0;
     for (std::size_t n = 0; n < given.size(); ++n) {
         const TableColor found = evaluate(table, given[n]);
         for (std::size_t i = 0; i < 3; ++i) {
-            const double difference = std::abs(found[i] - (*expected)[n][i]);
+            const double difference = std::abs(found[i] - expected[n][i]);
             largest = std::max(largest, difference);
             sum += difference;
         }
@@ -150,16 +147,15 @@ Result<ExportedLook> export_look(const Look& look) {
         if (look.is_enabled && (entry->state.enabled.on == 0 ||
                                 (effect.is_identity != nullptr && effect.is_identity(entry->words.data()))))
             continue;
-        const Result<std::string> why = obstacle(*entry);
-        if (!why) return failure(why.error());
-        if (why->empty()) {
+        DARKROOM_TRY_VALUE(const std::string why, obstacle(*entry));
+        if (why.empty()) {
             kept.entries.push_back(*entry);
             continue;
         }
         // A look that is off is made of its exposure and what changes the domain, and of nothing else.
         if (look.is_enabled)
             out.left_out.push_back(
-                fmt::format("{}: {}", names[static_cast<std::size_t>(entry - look.entries.data())], *why));
+                fmt::format("{}: {}", names[static_cast<std::size_t>(entry - look.entries.data())], why));
     }
     if (kept.entries.empty())
         return darkroom::user_error(fmt::format(
@@ -170,13 +166,11 @@ Result<ExportedLook> export_look(const Look& look) {
     for (std::uint32_t b = 0; b < edge; ++b)
         for (std::uint32_t g = 0; g < edge; ++g)
             for (std::uint32_t r = 0; r < edge; ++r) light.push_back({node(r), node(g), node(b)});
-    const auto baked = baker.bake(light);
-    if (!baked) return failure(baked.error());
+    DARKROOM_TRY_VALUE(const auto baked, baker.bake(light));
     out.file.table.size = edge;
-    for (const TableColor& color : *baked)
+    for (const TableColor& color : baked)
         for (const double value : color) out.file.table.cube.push_back(static_cast<float>(value));
-    const auto error = error_of(out.file.table, baker);
-    if (!error) return failure(error.error());
+    DARKROOM_TRY_VALUE(const auto error, error_of(out.file.table, baker));
     out.file.title = std::filesystem::path(look.shown_name).stem().string();
     out.file.comments = {
         fmt::format("Input: scene-linear Rec. 709 by (log2(c / {}) + {}) / {}, so that 0 to 1 are {} to {:+} stops",
@@ -184,7 +178,7 @@ Result<ExportedLook> export_look(const Look& look) {
                     LogShaper::lowest_stop, LogShaper::highest_stop),
         baker.is_scene() ? "Output: the same as the input" : "Output: code values of the display",
         fmt::format("Parameters: space = \"scene_linear\", result = \"{}\"", baker.is_scene() ? "same" : "display"),
-        fmt::format("Error on 20000 random colours: largest {:.6f}, mean {:.6f}, of 1", error->first, error->second)};
+        fmt::format("Error on 20000 random colours: largest {:.6f}, mean {:.6f}, of 1", error.first, error.second)};
     for (const std::string& line : out.left_out) out.file.comments.push_back("Left out: " + line);
     return out;
 }

@@ -166,14 +166,12 @@ Result<> make(const Options& options) {
     std::string text(kind->text);
     replace_all(text, "NAME", name);
     replace_all(text, "STRUCT", pascal(name));
-    if (kind->name == "effect")
-        if (Result<> done = check_effect(name, text); !done) return done;
-    if (Result<> done = check_folder(std::filesystem::path(file).parent_path(), MissingFolders::Refused); !done)
-        return done;
+    if (kind->name == "effect") DARKROOM_TRY(check_effect(name, text));
+    DARKROOM_TRY(check_folder(std::filesystem::path(file).parent_path(), MissingFolders::Refused));
     std::error_code error;
     if (std::filesystem::exists(file, error) && !options.is_forced)
         return user_error(fmt::format("{}: exists already; --force replaces it", printable(file)));
-    if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(text))); !done) return done;
+    DARKROOM_TRY(darkroom::write_file(file, std::as_bytes(std::span(text))));
     tell(fmt::format("{}: {}", printable(file), fmt::format(fmt::runtime(kind->next), shell_quoted(printable(file)))));
     return {};
 }

@@ -34,32 +34,26 @@ struct Options {
 Result<std::string> statistics_of(const Options& options, const darkroom::Device& device,
                                   const darkroom::Composer& composer, const darkroom::Plan& plan,
                                   const darkroom::CompileDesc& compile) {
-    const Result<const darkroom::Chip*> chip = chip_named(options.chip, device.info());
-    if (!chip) return failure(chip.error());
+    DARKROOM_TRY_VALUE(const darkroom::Chip* const chip, chip_named(options.chip, device.info()));
     std::vector<GivenLoops> loops;
     for (const std::string& text : options.loops) {
-        Result<GivenLoops> parsed = parse_loops(text);
-        if (!parsed) return failure(std::move(parsed));
-        loops.push_back(std::move(*parsed));
+        DARKROOM_TRY_VALUE(GivenLoops parsed, parse_loops(text));
+        loops.push_back(std::move(parsed));
     }
-    const auto kernels = composer.statistics(compile);
-    if (!kernels) return failure(kernels.error());
+    DARKROOM_TRY_VALUE(const auto kernels, composer.statistics(compile));
     const StatisticsReport report{
-        .device = device.info(), .plan = plan, .kernels = *kernels, .chip = *chip, .loops = loops};
+        .device = device.info(), .plan = plan, .kernels = kernels, .chip = chip, .loops = loops};
     return options.is_json ? json_of(report) : text_of(report);
 }
 
 /// What --bits and --output-space ask for.
 Result<darkroom::WriteOptions> target_of(const Options& options) {
-    Result<std::optional<darkroom::OutputSpace>> space = options.space.space();
-    if (!space) return failure(std::move(space));
-    darkroom::WriteOptions out{.samples = darkroom::SampleKind::Integer8, .space = *space};
+    DARKROOM_TRY_VALUE(std::optional<darkroom::OutputSpace> space, options.space.space());
+    darkroom::WriteOptions out{.samples = darkroom::SampleKind::Integer8, .space = space};
     if (out.space && out.space->integers != darkroom::srgb_color)
         out.samples = out.space->integers ? darkroom::SampleKind::Integer16 : darkroom::SampleKind::Half;
     if (options.bits) {
-        const Result<darkroom::SampleKind> samples = parse_bits(*options.bits);
-        if (!samples) return failure(samples.error());
-        out.samples = *samples;
+        DARKROOM_TRY_VALUE(out.samples, parse_bits(*options.bits));
     }
     if (out.space && !darkroom::color_of(out, *out.samples))
         return darkroom::user_error(fmt::format("--output-space {}: {} samples cannot hold it", out.space->name,
@@ -87,52 +81,43 @@ void name_no_frame(darkroom::Plan& plan) {
 }
 
 Result<std::string> text_of(const Options& options) {
-    Result<darkroom::Look> look = options.look.look_of_frames();
-    if (!look) return failure(look.error());
+    DARKROOM_TRY_VALUE(darkroom::Look look, options.look.look_of_frames());
     if (options.wants_stack) {
-        if (look->is_flat) darkroom::make_stack(*look);
-        return darkroom::write_look(*look);
+        if (look.is_flat) darkroom::make_stack(look);
+        return darkroom::write_look(look);
     }
-    const Result<darkroom::WriteOptions> write = target_of(options);
-    if (!write) return failure(write.error());
-    const darkroom::DevelopTarget target = target_for(*write->samples);
-    if (write->space) suit(*look, target, *write);
-    const Result<darkroom::KernelStage> stage = options.device.stage();
-    if (!stage) return failure(stage.error());
+    DARKROOM_TRY_VALUE(const darkroom::WriteOptions write, target_of(options));
+    const darkroom::DevelopTarget target = target_for(*write.samples);
+    if (write.space) suit(look, target, write);
+    DARKROOM_TRY_VALUE(const darkroom::KernelStage stage, options.device.stage());
     darkroom::FrameFile frame;
     darkroom::DevelopInput input{.extent = {1920, 1080}};
     if (!options.frame.empty()) {
-        Result<darkroom::FrameFile> read = darkroom::read_frame(options.frame, {.has_shadow_depths = false});
-        if (!read) return failure(std::move(read));
-        frame = std::move(*read);
+        DARKROOM_TRY_VALUE(frame, darkroom::read_frame(options.frame, {.has_shadow_depths = false}));
         input = develop_input(frame, {});
     }
     if (!options.size.empty()) {
-        const Result<VkExtent2D> size = parse_size(options.size);
-        if (!size) return failure(size.error());
-        input.extent = *size;
+        DARKROOM_TRY_VALUE(input.extent, parse_size(options.size));
     }
-    Result<darkroom::Device> device =
-        options.wants_statistics ? options.device.create_compiler() : options.device.create_if_named();
-    if (!device) return failure(std::move(device));
-    if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
-    darkroom::Composer composer(*device);
-    if (Result<> done = darkroom::apply(*look, composer); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(darkroom::Device device,
+                       options.wants_statistics ? options.device.create_compiler() : options.device.create_if_named());
+    DARKROOM_TRY(darkroom::check_extent(device, input.extent));
+    darkroom::Composer composer(device);
+    DARKROOM_TRY(darkroom::apply(look, composer));
     const darkroom::DevelopDesc desc{.target = target,
-                                     .color = darkroom::color_of(*write, *write->samples),
-                                     .kernels = *stage,
+                                     .color = darkroom::color_of(write, *write.samples),
+                                     .kernels = stage,
                                      .fuse = options.device.is_fused()};
-    darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
+    darkroom::CompileDesc compile = darkroom::compile_desc_for(device, input, desc);
     if (options.frame.empty()) compile.color.format = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
-    if (look->ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
+    if (look.ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
     compile.has_shadows =
         std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
     if (options.frame.empty() && is_scene_name(options.look.file)) add_layers_of_scenes(compile);
-    Result<darkroom::Plan> plan = composer.plan(compile);
-    if (!plan) return failure(plan.error());
-    if (options.frame.empty()) name_no_frame(*plan);
-    if (options.wants_statistics) return statistics_of(options, *device, composer, *plan, compile);
-    return options.is_json ? plan->json() : plan->text();
+    DARKROOM_TRY_VALUE(darkroom::Plan plan, composer.plan(compile));
+    if (options.frame.empty()) name_no_frame(plan);
+    if (options.wants_statistics) return statistics_of(options, device, composer, plan, compile);
+    return options.is_json ? plan.json() : plan.text();
 }
 
 int run(const Options& options) {

@@ -214,7 +214,7 @@ Result<GivenLoops> parse_loops(const std::string& text) {
 
 Result<std::string> text_of(const StatisticsReport& report) {
     const std::vector<Row> rows = rows_of(report);
-    if (Result<> checked = check_loops(report, rows); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_loops(report, rows));
     const bool is_understood = std::ranges::all_of(rows, [](const Row& row) { return row.cost.has_value(); });
     std::string out = header_of(report);
     out += is_understood ? table_of(rows, report.plan.extent, report.chip != nullptr) : driver_lines(rows);
@@ -224,7 +224,7 @@ Result<std::string> text_of(const StatisticsReport& report) {
 
 Result<std::string> json_of(const StatisticsReport& report) {
     const std::vector<Row> rows = rows_of(report);
-    if (Result<> checked = check_loops(report, rows); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_loops(report, rows));
     Json out{{"device", report.device.name},
              {"driver", report.device.driver},
              {"width", report.plan.extent.width},

@@ -70,15 +70,14 @@ Result<VkOffset2D> parse_place(const std::string& text) {
 Result<std::vector<VkOffset2D>> places(const Options& options, VkExtent2D extent) {
     std::vector<VkOffset2D> out;
     for (const std::string& text : options.at) {
-        const Result<VkOffset2D> place = parse_place(text);
-        if (!place) return failure(place.error());
+        DARKROOM_TRY_VALUE(const VkOffset2D place, parse_place(text));
         const auto is_in = [](std::int32_t at, std::uint32_t size) {
             return at >= 0 && static_cast<std::uint32_t>(at) < size;
         };
-        if (!is_in(place->x, extent.width) || !is_in(place->y, extent.height))
-            return user_error(fmt::format("--at {},{}: the picture is {}x{}, allowed is 0,0 to {},{}", place->x,
-                                          place->y, extent.width, extent.height, extent.width - 1, extent.height - 1));
-        out.push_back(*place);
+        if (!is_in(place.x, extent.width) || !is_in(place.y, extent.height))
+            return user_error(fmt::format("--at {},{}: the picture is {}x{}, allowed is 0,0 to {},{}", place.x, place.y,
+                                          extent.width, extent.height, extent.width - 1, extent.height - 1));
+        out.push_back(place);
     }
     return out;
 }
@@ -94,34 +93,29 @@ class Probe {
     explicit Probe(const Options& options) : options_(options) {}
 
     Result<Report> run() {
-        if (Result<> done = read(); !done) return failure(std::move(done));
-        const Result<std::vector<VkOffset2D>> at = places(options_, input_.extent);
-        if (!at) return failure(at.error());
-        if (Result<> done = make_composer(); !done) return failure(std::move(done));
+        DARKROOM_TRY(read());
+        DARKROOM_TRY_VALUE(const std::vector<VkOffset2D> at, places(options_, input_.extent));
+        DARKROOM_TRY(make_composer());
         const std::size_t most = darkroom::Prober::max_pixels(*composer_);
-        if (at->size() > most)
-            return user_error(fmt::format("--at: {} pixels of a stack of {} entries: allowed are at most {}",
-                                          at->size(), composer_->size(), most));
+        if (at.size() > most)
+            return user_error(fmt::format("--at: {} pixels of a stack of {} entries: allowed are at most {}", at.size(),
+                                          composer_->size(), most));
         // The picture as develop makes it, with its own kernels and rounding: what is in its file.
         darkroom::Developer developer(*device_, develop_);
-        const Result<darkroom::DevelopedPicture> picture = developer.develop(*composer_, input_);
-        if (!picture) return failure(picture.error());
+        DARKROOM_TRY_VALUE(const darkroom::DevelopedPicture picture, developer.develop(*composer_, input_));
         warn_of_what_is_left_out(look_, *composer_, developer.plan().left_out);
-        darkroom::Prober prober(*device_, develop_, static_cast<std::uint32_t>(at->size()));
-        Result<darkroom::Inspection> seen = prober.probe(*composer_, input_, *at);
-        if (!seen) return failure(std::move(seen));
+        darkroom::Prober prober(*device_, develop_, static_cast<std::uint32_t>(at.size()));
+        DARKROOM_TRY_VALUE(darkroom::Inspection seen, prober.probe(*composer_, input_, at));
         Report out{.extent = input_.extent, .time = input_.time, .frame_index = input_.frame_index, .pixels = {}};
-        for (InspectedPixel& pixel : seen->pixels) {
+        for (InspectedPixel& pixel : seen.pixels) {
             Probed& made = out.pixels.emplace_back(Probed{.pixel = std::move(pixel), .codes = {}, .birth = {}});
             const std::size_t first = (static_cast<std::size_t>(made.pixel.at.y) * input_.extent.width +
                                        static_cast<std::size_t>(made.pixel.at.x)) *
                                       made.codes.size();
-            std::copy_n(picture->bytes.begin() + static_cast<std::ptrdiff_t>(first), made.codes.size(),
+            std::copy_n(picture.bytes.begin() + static_cast<std::ptrdiff_t>(first), made.codes.size(),
                         made.codes.begin());
             if (is_all_finite(made.pixel)) continue;
-            auto birth = prober.find_birth(*composer_, input_, made.pixel.at);
-            if (!birth) return failure(std::move(birth));
-            made.birth = *birth;
+            DARKROOM_TRY_VALUE(made.birth, prober.find_birth(*composer_, input_, made.pixel.at));
         }
         return out;
     }
@@ -131,34 +125,24 @@ class Probe {
   private:
     /// The look and the frame, as develop reads them.
     Result<> read() {
-        Result<darkroom::Look> look = options_.look.look_of_frames();
-        if (!look) return failure(std::move(look));
-        look_ = std::move(*look);
+        DARKROOM_TRY_VALUE(look_, options_.look.look_of_frames());
         if (!options_.look.events.empty()) {
-            Result<Timeline> timeline = Timeline::read(options_.look.events, look_);
-            if (!timeline) return failure(std::move(timeline));
-            timeline_ = std::move(*timeline);
+            DARKROOM_TRY_VALUE(timeline_, Timeline::read(options_.look.events, look_));
         }
-        if (Result<> done = options_.ocio.check(options_.frame.has_input_space()); !done) return done;
+        DARKROOM_TRY(options_.ocio.check(options_.frame.has_input_space()));
         const std::vector<std::string> eyes = options_.frame.eyes();
         if (eyes.size() > 1) return user_error("--eye both: allowed is one view at a time");
-        Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration, eyes.front());
-        if (!frame) return failure(std::move(frame));
-        if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)
-            return failure(needs.error());
-        frame->keeps_halves = true;
+        DARKROOM_TRY_VALUE(darkroom::FrameOptions frame,
+                           options_.frame.options(options_.ocio.configuration, eyes.front()));
+        DARKROOM_TRY(add_needs(look_, input_.delta_time, timeline_, frame));
+        frame.keeps_halves = true;
         const long long number = darkroom::frame_number(options_.input).value_or(1);
-        Result<darkroom::FrameFile> file = read_frame({options_.input, number}, *frame);
-        if (!file) return failure(std::move(file));
-        darkroom::NewSize new_size{file->color.width, file->color.height};
+        DARKROOM_TRY_VALUE(darkroom::FrameFile file, read_frame({options_.input, number}, frame));
+        darkroom::NewSize new_size{file.color.width, file.color.height};
         if (!options_.size.empty()) {
-            const Result<darkroom::NewSize> size = parse_new_size(options_.size);
-            if (!size) return failure(size.error());
-            new_size = *size;
+            DARKROOM_TRY_VALUE(new_size, parse_new_size(options_.size));
         }
-        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*file), new_size);
-        if (!sized) return failure(std::move(sized));
-        file_ = std::move(*sized);
+        DARKROOM_TRY_VALUE(file_, darkroom::resize(std::move(file), new_size));
         const std::string shown = darkroom::printable(options_.input);
         for (const std::string& warning : file_.warnings) warn(fmt::format("{}: {}", shown, warning));
         tell_of_assumed_view(file_, shown);
@@ -169,21 +153,17 @@ class Probe {
     }
 
     Result<> make_composer() {
-        const Result<darkroom::KernelStage> stage = options_.device.stage();
-        if (!stage) return failure(stage.error());
-        develop_ = {.kernels = *stage, .fuse = options_.device.is_fused()};
-        Result<darkroom::Device> device = options_.device.create();
-        if (!device) return failure(std::move(device));
-        device_ = std::make_unique<darkroom::Device>(std::move(*device));
-        if (Result<> done = darkroom::check_extent(*device_, input_.extent); !done) return done;
+        DARKROOM_TRY_VALUE(const darkroom::KernelStage stage, options_.device.stage());
+        develop_ = {.kernels = stage, .fuse = options_.device.is_fused()};
+        DARKROOM_TRY_VALUE(darkroom::Device device, options_.device.create());
+        device_ = std::make_unique<darkroom::Device>(std::move(device));
+        DARKROOM_TRY(darkroom::check_extent(*device_, input_.extent));
         composer_ = std::make_unique<darkroom::Composer>(*device_, darkroom::ComposerDesc{.frames_in_flight = 1});
-        if (Result<> done = darkroom::apply(look_, *composer_, {.keeps = timeline_.entries()}); !done) return done;
-        if (Result<> done = timeline_.advance(*composer_, input_.time); !done) return done;
+        DARKROOM_TRY(darkroom::apply(look_, *composer_, {.keeps = timeline_.entries()}));
+        DARKROOM_TRY(timeline_.advance(*composer_, input_.time));
         UiSource ui(look_, timeline_);
-        if (Result<> done = ui.advance(*composer_, input_.time); !done) return done;
-        auto picture = ui.picture(input_.extent);
-        if (!picture) return failure(picture.error());
-        ui_ = *picture;
+        DARKROOM_TRY(ui.advance(*composer_, input_.time));
+        DARKROOM_TRY_VALUE(ui_, ui.picture(input_.extent));
         input_.ui = *ui_;
         return {};
     }

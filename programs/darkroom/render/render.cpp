@@ -72,9 +72,9 @@ class Render {
     explicit Render(const RenderFlags& flags) : flags_(flags) {}
 
     Result<> run() {
-        if (Result<> done = read(); !done) return done;
+        DARKROOM_TRY(read());
         if (job_.shots.empty()) return {};  // all are there
-        if (Result<> done = make(); !done) return done;
+        DARKROOM_TRY(make());
         const auto pictures = std::ranges::count(job_.shots, true, &Shot::is_written);
         items_.resize(job_.shots.size());
         const Result<> done = run_sequence({.steps = items_.size(),
@@ -94,12 +94,10 @@ class Render {
     }
 
     Result<> check() {
-        if (Result<> done = read_flags(); !done) return done;
+        DARKROOM_TRY(read_flags());
         // Its prefabs are read with it; what a scene only warns of, each run tells.
         if (!scene::is_model_path(flags_.scene)) {
-            Result<scene::Scene> scene = read_scene();
-            if (!scene) return failure(std::move(scene));
-            scene_ = std::move(*scene);
+            DARKROOM_TRY_VALUE(scene_, read_scene());
         }
         return read_look();
     }
@@ -117,32 +115,24 @@ class Render {
     };
 
     Result<> read_flags() {
-        Result<RenderJob> job = flags_.job();
-        if (!job) return failure(std::move(job));
-        job_ = std::move(*job);
+        DARKROOM_TRY_VALUE(job_, flags_.job());
         if (job_.stream) stream_.emplace(*job_.stream);
         tell_of_half_range(job_.write);
-        const Result<darkroom::KernelStage> stage = flags_.device.stage();
-        if (!stage) return failure(stage.error());
-        develop_ = {.target = job_.target, .color = job_.color, .kernels = *stage, .fuse = flags_.device.is_fused()};
+        DARKROOM_TRY_VALUE(const darkroom::KernelStage stage, flags_.device.stage());
+        develop_ = {.target = job_.target, .color = job_.color, .kernels = stage, .fuse = flags_.device.is_fused()};
         return {};
     }
 
     Result<> read_look() {
         flags_.add_lens_of(scene_.camera, job_.desc.lens);
         // Models hold no look.
-        Result<darkroom::Look> look =
-            flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene, lens_of(scene_.camera));
-        if (!look) return failure(std::move(look));
-        look_ = std::move(*look);
-        if (Result<> done = check_ui_files(look_); !done) return done;
+        DARKROOM_TRY_VALUE(
+            look_, flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene, lens_of(scene_.camera)));
+        DARKROOM_TRY(check_ui_files(look_));
         suit(look_, job_.target, job_.write);
-        if (!job_.stream)
-            if (Result<> done = check_codes(look_, job_.target, job_.write); !done) return done;
+        if (!job_.stream) DARKROOM_TRY(check_codes(look_, job_.target, job_.write));
         if (!flags_.look.events.empty()) {
-            Result<Timeline> timeline = Timeline::read(flags_.look.events, look_);
-            if (!timeline) return failure(std::move(timeline));
-            timeline_ = std::move(*timeline);
+            DARKROOM_TRY_VALUE(timeline_, Timeline::read(flags_.look.events, look_));
         }
         motion_ = Motion(look_, timeline_, [this](std::size_t frame) { return job_.time_of(frame); });
         choose_way();
@@ -169,7 +159,7 @@ class Render {
 
     // Everything that needs no device: a slip is told before one is made.
     Result<> read() {
-        if (Result<> done = read_flags(); !done) return done;
+        DARKROOM_TRY(read_flags());
         std::vector<std::string> warnings;
         Result<scene::Scene> scene = read_scene(&warnings);
         for (const std::string& warning : warnings) warn(warning);
@@ -180,12 +170,12 @@ class Render {
             shot.time = scene_.time;
             shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
         }
-        if (Result<> done = read_look(); !done) return done;
+        DARKROOM_TRY(read_look());
         const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
         if (job_.orbit.field_of_view && is_orthographic) warn("--fov: ignored, the scene's camera is orthographic");
         assets_ = scene::load_assets(scene_);
-        if (Result<> done = check_model(); !done) return done;
-        if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
+        DARKROOM_TRY(check_model());
+        DARKROOM_TRY(scene::check_snapshot(scene_, assets_));
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
         std::ranges::move(flags_.look.input_files(), std::back_inserter(inputs));
@@ -193,15 +183,13 @@ class Render {
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})
-                if (!path.empty() && path != stream_name)
-                    if (Result<> done = check_output(path, files); !done) return done;
+                if (!path.empty() && path != stream_name) DARKROOM_TRY(check_output(path, files));
         const std::size_t asked_for = job_.shots.size();
         const std::size_t skipped = std::erase_if(job_.shots, [&](const Shot& shot) {
             return flags_.run.is_skipped(shot.picture) && (shot.frame.empty() || flags_.run.is_skipped(shot.frame));
         });
         RunFlags::tell_of_skipped(skipped, asked_for);
-        if (way_ == Way::Developed)
-            if (Result<> done = add_pre_roll(); !done) return done;
+        if (way_ == Way::Developed) DARKROOM_TRY(add_pre_roll());
         tell(fmt::format("Loaded scene {}\nEntities: {}", darkroom::printable(scene_.name), scene_.entities.size()));
         return {};
     }
@@ -210,11 +198,10 @@ class Render {
     Result<> add_pre_roll() {
         if (job_.shots.empty()) return {};
         const double delta_time = job_.shots.front().delta_time;
-        const Result<std::uint32_t> of_look = add_needs(look_, delta_time, timeline_, needs_);
-        if (!of_look) return failure(of_look.error());
-        const Result<std::uint32_t> of_motion = motion_.pre_roll(look_, delta_time, job_.shots.back().number);
-        if (!of_motion) return failure(of_motion.error());
-        const std::uint32_t pre_roll = std::max(*of_look, *of_motion);
+        DARKROOM_TRY_VALUE(const std::uint32_t of_look, add_needs(look_, delta_time, timeline_, needs_));
+        DARKROOM_TRY_VALUE(const std::uint32_t of_motion,
+                           motion_.pre_roll(look_, delta_time, job_.shots.back().number));
+        const std::uint32_t pre_roll = std::max(of_look, of_motion);
         std::vector<Shot> all;
         for (const Shot& shot : job_.shots) {
             std::uint64_t first = shot.number - std::min<std::uint64_t>(shot.number, pre_roll);
@@ -261,11 +248,10 @@ class Render {
     }
 
     Result<> make() {
-        Result<darkroom::Device> device = flags_.device.create();
-        if (!device) return failure(std::move(device));
-        device_ = std::make_unique<darkroom::Device>(std::move(*device));
+        DARKROOM_TRY_VALUE(darkroom::Device device, flags_.device.create());
+        device_ = std::make_unique<darkroom::Device>(std::move(device));
         const VkExtent2D extent = job_.desc.extent;
-        if (Result<> done = darkroom::check_extent(*device_, extent); !done) return done;
+        DARKROOM_TRY(darkroom::check_extent(*device_, extent));
         render::RenderDesc desc = job_.desc;
         desc.draw.has_grid = desc.draw.has_grid && scene_.has_grid;
         const bool has_frames = !job_.shots.back().frame.empty();
@@ -276,21 +262,20 @@ class Render {
             if (desc.draw.debug == render::DebugView::None && !flags_.drawn.has_msaa()) desc.samples = usual_msaa;
             // What the file holds more of than eight bits: half floats have eleven, and no range to leave.
             if (develop_.target != DevelopTarget::Encoded8) desc.display_format = VK_FORMAT_R16G16B16A16_SFLOAT;
-            if (Result<> done = make_renderer(desc, display_); !done) return done;
+            DARKROOM_TRY(make_renderer(desc, display_));
         }
         if (way_ != Way::Display || has_frames) {
-            const Result<std::uint32_t> samples = flags_.samples(scene_.samples);
-            if (!samples) return failure(samples.error());
+            DARKROOM_TRY_VALUE(const std::uint32_t samples, flags_.samples(scene_.samples));
             is_jittered_ = job_.is_sequence && way_ == Way::Developed && gathers_frames(look_);
             // Frames that are gathered have their other places in the frames before.
-            desc.positions = is_jittered_ && !flags_.has_samples() && !flags_.has_lens() ? 1 : *samples;
+            desc.positions = is_jittered_ && !flags_.has_samples() && !flags_.has_lens() ? 1 : samples;
             desc.has_transparency = desc.positions == 1 && desc.samples == 1 && needs_.has_transparency;
             desc.extent = scaled(extent, job_.render_scale);
             scale_ = static_cast<float>(extent.height) / static_cast<float>(desc.extent.height);
             desc.draw.mip_bias = way_ == Way::Developed ? darkroom::Composer::mip_bias(scale_) : 0;
             desc.output = render::Output::Hdr;
             desc.draw.debug = render::DebugView::None;
-            if (Result<> done = make_renderer(desc, hdr_); !done) return done;
+            DARKROOM_TRY(make_renderer(desc, hdr_));
         }
         if (way_ != Way::Developed) return {};
         if (job_.render_scale != 1) develop_.target_extent = extent;
@@ -301,10 +286,9 @@ class Render {
     }
 
     Result<> make_renderer(const render::RenderDesc& desc, std::optional<render::Renderer>& to) {
-        Result<render::Renderer> made =
-            display_ ? display_->sharing(desc) : render::Renderer::create(*device_, scene_, assets_, desc);
-        if (!made) return failure(std::move(made));
-        to.emplace(std::move(*made));
+        DARKROOM_TRY_VALUE(render::Renderer made, display_ ? display_->sharing(desc)
+                                                           : render::Renderer::create(*device_, scene_, assets_, desc));
+        to.emplace(std::move(made));
         return {};
     }
 
@@ -325,13 +309,11 @@ class Render {
         if (i == 0)
             for (const std::string& warning : item.snapshot->warnings) warn(warning);
         if (display_) {
-            if (Result<> done = display_->prepare(*item.snapshot); !done) return done;
-            Result<DevelopedPicture> read = darkroom::read_picture(*device_, display_->picture(), recorder(*display_));
-            if (!read) return failure(std::move(read));
-            item.picture = std::move(*read);
+            DARKROOM_TRY(display_->prepare(*item.snapshot));
+            DARKROOM_TRY_VALUE(item.picture,
+                               darkroom::read_picture(*device_, display_->picture(), recorder(*display_)));
         }
-        if (hdr_)
-            if (Result<> done = render_light(i); !done) return done;
+        if (hdr_) DARKROOM_TRY(render_light(i));
         item.snapshot.reset();
         return {};
     }
@@ -340,9 +322,7 @@ class Render {
         const Shot& shot = job_.shots[i];
         if (!shot.is_written) return {};
         Item& item = items_[i];
-        if (item.frame)
-            if (Result<> done = darkroom::write_frame(shot.frame, *item.frame, job_.write.max_threads); !done)
-                return done;
+        if (item.frame) DARKROOM_TRY(darkroom::write_frame(shot.frame, *item.frame, job_.write.max_threads));
         if (!stream_) return write(shot.picture, std::move(item.picture), job_.write);
         item.extent = item.picture.extent;
         item.packed = stream_->pack(std::exchange(item.picture, {}));
@@ -364,10 +344,8 @@ class Render {
     Result<> render_light(std::size_t i) {
         const Shot& shot = job_.shots[i];
         Item& item = items_[i];
-        if (Result<> done =
-                hdr_->prepare(*item.snapshot, is_jittered_ ? jitter_of(shot.number, scale_) : render::FrameJitter{});
-            !done)
-            return done;
+        DARKROOM_TRY(
+            hdr_->prepare(*item.snapshot, is_jittered_ ? jitter_of(shot.number, scale_) : render::FrameJitter{}));
         darkroom::DeviceFrame input{.frame = hdr_->frame(),
                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
                                     .layer_usage = hdr_->layer_usage(),
@@ -380,20 +358,17 @@ class Render {
         darkroom::FrameLayers layers;
         const bool has_frame = !shot.frame.empty();
         if (way_ == Way::Developed) {
-            if (Result<> done = motion_.advance(*composer_, shot.number, shot.time); !done) return done;
-            const auto ui = motion_.picture(job_.desc.extent);
-            if (!ui) return failure(ui.error());
-            input.ui = **ui;
-            Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
-            if (!made) return failure(std::move(made));
+            DARKROOM_TRY(motion_.advance(*composer_, shot.number, shot.time));
+            DARKROOM_TRY_VALUE(const auto ui, motion_.picture(job_.desc.extent));
+            input.ui = *ui;
+            DARKROOM_TRY_VALUE(DevelopedPicture made,
+                               developer_->develop(*composer_, input, has_frame ? &layers : nullptr));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
             if (i == 0) tell_of_dim_bloom(*device_, *composer_, look_, develop_, input);
-            item.picture = std::move(*made);
+            item.picture = std::move(made);
             if (flags_.run.has_timings) pass_times_.add(composer_->times().passes);
         } else {
-            Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);
-            if (!read) return failure(std::move(read));
-            layers = std::move(*read);
+            DARKROOM_TRY_VALUE(layers, darkroom::read_layers(*device_, input.frame, input.record_before));
             if (way_ == Way::Linear) item.picture = {.extent = layers.extent, .pixels = layers.color};
         }
         if (has_frame) item.frame = frame_file(input.frame, std::move(layers));

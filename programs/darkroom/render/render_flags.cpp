@@ -93,7 +93,7 @@ void RenderFlags::add_moments(CommandFlags command) {
 
 Result<std::vector<Shot>> RenderFlags::shots(const RenderJob& job) const {
     double time = 0;
-    if (Result<> done = time_.read_to(time); !done) return failure(std::move(done));
+    DARKROOM_TRY(time_.read_to(time));
     if (time_.is_given() && frames_)
         return user_error("--time: --frames sets the time of every frame; give one of the two");
     const double step = 1 / job.frames_per_second;
@@ -106,10 +106,9 @@ Result<std::vector<Shot>> RenderFlags::shots(const RenderJob& job) const {
                     .frame = darkroom::numbered(frame_.value_or(""), static_cast<long long>(number))};
     };
     if (!frames_) return std::vector{shot(0, time)};
-    const Result<darkroom::FrameSet> frames = parse_frames(*frames_);
-    if (!frames) return failure(frames.error());
+    DARKROOM_TRY_VALUE(const darkroom::FrameSet frames, parse_frames(*frames_));
     std::vector<Shot> out;
-    for (const long long number : frames->numbers()) {
+    for (const long long number : frames.numbers()) {
         if (number < 0) return user_error(fmt::format("--frames {}: a scene begins at frame 0", printable(*frames_)));
         out.push_back(shot(static_cast<std::uint64_t>(number), job.time_of(static_cast<std::uint64_t>(number))));
     }
@@ -137,32 +136,28 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
             if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
                 return user_error(fmt::format("{}: -o and --save-frame name the same file", printable(path.string())));
-            if (Result<> done = check_output(path, inputs, run.missing_folders()); !done) return done;
-            if (place == &shot.frame)
-                if (Result<> done = darkroom::check_own_file(path, darkroom::FileOwner::Anyone); !done) return done;
+            DARKROOM_TRY(check_output(path, inputs, run.missing_folders()));
+            if (place == &shot.frame) DARKROOM_TRY(darkroom::check_own_file(path, darkroom::FileOwner::Anyone));
         }
     return {};
 }
 
 Result<> RenderFlags::set_target(RenderJob& job) const {
-    Result<std::optional<StreamDesc>> stream = write.stream(out_, job.frames_per_second);
-    if (!stream) return failure(std::move(stream));
-    job.stream = *stream;
+    DARKROOM_TRY_VALUE(job.stream, write.stream(out_, job.frames_per_second));
     if (job.stream) {
         job.target = target_for(job.stream->format);
         return run.check_stream();
     }
-    const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
-    if (!samples) return failure(samples.error());
-    job.target = target_for(*samples, job.write);
-    job.color = darkroom::color_of(job.write, *samples);
+    DARKROOM_TRY_VALUE(const darkroom::SampleKind samples, darkroom::sample_kind(out_, job.write));
+    job.target = target_for(samples, job.write);
+    job.color = darkroom::color_of(job.write, samples);
     return {};
 }
 
 Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
     std::uint32_t samples = of_scene > 0 ? of_scene : usual_samples;
     if (has_lens()) samples = std::max(samples, usual_samples_of_lens);
-    if (Result<> done = samples_.read_to(samples); !done) return failure(std::move(done));
+    DARKROOM_TRY(samples_.read_to(samples));
     if (has_lens() && samples == 1)
         return user_error(
             fmt::format("--samples 1: with --aperture, allowed is [2, {}]", darkroom::scene::max_samples));
@@ -173,7 +168,7 @@ Result<> RenderFlags::set_lens(RenderJob& job) const {
     darkroom::render::LensDesc& lens = job.desc.lens;
     for (const auto& [flag, to] : {std::pair(&aperture_, &lens.f_stop), std::pair(&focus_, &lens.focus_distance),
                                    std::pair(&sensor_height_, &lens.sensor_height)})
-        if (Result<> done = flag->read_to(*to); !done) return done;
+        DARKROOM_TRY(flag->read_to(*to));
     if (!has_lens() && (focus_.is_given() || sensor_height_.is_given()))
         return user_error(
             fmt::format("{}: needs --aperture, which makes a lens", focus_.is_given() ? "--focus" : "--sensor-height"));
@@ -189,33 +184,21 @@ void RenderFlags::add_lens_of(const darkroom::scene::Camera& camera, darkroom::r
 
 Result<RenderJob> RenderFlags::job() const {
     RenderJob job;
-    if (Result<> done = run.start_report(); !done) return failure(std::move(done));
-    const Result<std::uint64_t> seed = drawn.seed();
-    if (!seed) return failure(seed.error());
-    job.seed = *seed;
-    Result<darkroom::render::RenderDesc> desc = drawn.desc();
-    if (!desc) return failure(std::move(desc));
-    job.desc = *desc;
-    const Result<darkroom::scene::OrbitOverride> orbit = drawn.orbit();
-    if (!orbit) return failure(orbit.error());
-    job.orbit = *orbit;
-    if (Result<> done = write.ocio.check(false); !done) return failure(std::move(done));
-    Result<darkroom::WriteOptions> options = write.options();
-    if (!options) return failure(std::move(options));
-    job.write = std::move(*options);
-    const Result<std::size_t> jobs = run.jobs();
-    if (!jobs) return failure(jobs.error());
-    job.jobs = *jobs;
-    if (Result<> done = frames_per_second_.read_to(job.frames_per_second); !done) return failure(std::move(done));
-    if (Result<> done = render_scale_.read_to(job.render_scale); !done) return failure(std::move(done));
-    if (Result<> done = set_lens(job); !done) return failure(std::move(done));
+    DARKROOM_TRY(run.start_report());
+    DARKROOM_TRY_VALUE(job.seed, drawn.seed());
+    DARKROOM_TRY_VALUE(job.desc, drawn.desc());
+    DARKROOM_TRY_VALUE(job.orbit, drawn.orbit());
+    DARKROOM_TRY(write.ocio.check(false));
+    DARKROOM_TRY_VALUE(job.write, write.options());
+    DARKROOM_TRY_VALUE(job.jobs, run.jobs());
+    DARKROOM_TRY(frames_per_second_.read_to(job.frames_per_second));
+    DARKROOM_TRY(render_scale_.read_to(job.render_scale));
+    DARKROOM_TRY(set_lens(job));
     job.is_sequence = frames_.has_value();
-    if (Result<> done = set_target(job); !done) return failure(std::move(done));
-    Result<std::vector<Shot>> shots = this->shots(job);
-    if (!shots) return failure(std::move(shots));
-    job.shots = std::move(*shots);
+    DARKROOM_TRY(set_target(job));
+    DARKROOM_TRY_VALUE(job.shots, this->shots(job));
     if (job.shots.size() > 1) job.write.max_threads = 1;  // several files are encoded at once
-    if (Result<> done = check_files(job.shots); !done) return failure(std::move(done));
+    DARKROOM_TRY(check_files(job.shots));
     return job;
 }
 

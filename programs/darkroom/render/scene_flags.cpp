@@ -94,8 +94,8 @@ Result<VkExtent2D> SceneFlags::extent() const {
         return parse_size(*size_);
     }
     VkExtent2D extent = default_extent_;
-    if (Result<> done = width_.read_to(extent.width); !done) return failure(std::move(done));
-    if (Result<> done = height_.read_to(extent.height); !done) return failure(std::move(done));
+    DARKROOM_TRY(width_.read_to(extent.width));
+    DARKROOM_TRY(height_.read_to(extent.height));
     return extent;
 }
 
@@ -103,32 +103,24 @@ Result<darkroom::scene::OrbitOverride> SceneFlags::orbit() const {
     darkroom::scene::OrbitOverride out;
     for (const auto& [flag, to] : {std::pair(&distance_, &out.distance), std::pair(&yaw_, &out.yaw),
                                    std::pair(&pitch_, &out.pitch), std::pair(&field_of_view_, &out.field_of_view)})
-        if (Result<> done = flag->read_to(*to); !done) return failure(std::move(done));
+        DARKROOM_TRY(flag->read_to(*to));
     if (target_) {
-        const Result<darkroom::scene::vec3> target = parse_vec3("--target", *target_);
-        if (!target) return failure(target.error());
-        out.target = *target;
+        DARKROOM_TRY_VALUE(out.target, parse_vec3("--target", *target_));
     }
     return out;
 }
 
 Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
     darkroom::render::RenderDesc out;
-    const Result<VkExtent2D> size = extent();
-    if (!size) return failure(size.error());
-    out.extent = *size;
-    if (Result<> done = shadow_resolution_.read_to(out.cascades.resolution); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(out.extent, extent());
+    DARKROOM_TRY(shadow_resolution_.read_to(out.cascades.resolution));
     out.samples = usual_msaa_;
-    if (Result<> done = msaa_.read_to(out.samples); !done) return failure(std::move(done));
+    DARKROOM_TRY(msaa_.read_to(out.samples));
     if (shadow_filter_) {
-        const Result<darkroom::render::ShadowFilter> filter = parse_shadow_filter(*shadow_filter_);
-        if (!filter) return failure(filter.error());
-        out.cascades.filter = *filter;
+        DARKROOM_TRY_VALUE(out.cascades.filter, parse_shadow_filter(*shadow_filter_));
     }
     if (debug_mode_) {
-        const Result<DebugView> view = parse_debug_mode(*debug_mode_);
-        if (!view) return failure(view.error());
-        out.draw.debug = *view;
+        DARKROOM_TRY_VALUE(out.draw.debug, parse_debug_mode(*debug_mode_));
     }
     out.is_tone_mapped = !has_no_tone_mapping_;
     out.draw.has_shadows = !has_no_shadows_;
@@ -183,7 +175,7 @@ darkroom::CameraLens lens_of(const darkroom::scene::Camera& camera) {
 
 Result<std::uint64_t> SceneFlags::seed() const {
     std::uint64_t seed = 0;
-    if (Result<> done = seed_.read_to(seed); !done) return failure(std::move(done));
+    DARKROOM_TRY(seed_.read_to(seed));
     return seed;
 }
 

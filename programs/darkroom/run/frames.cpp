@@ -169,24 +169,23 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
 Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, Timeline timeline,
                                 darkroom::FrameOptions& frame) {
     darkroom::Composer composer(darkroom::Device::assumed());
-    if (Result<> done = darkroom::apply(look, composer, {.keeps = timeline.entries()}); !done)
-        return failure(std::move(done));
+    DARKROOM_TRY(darkroom::apply(look, composer, {.keeps = timeline.entries()}));
     constexpr VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
-    const Result<darkroom::Plan> plan = composer.plan({.max_extent = {64, 64},
-                                                       .color = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
-                                                       .depth = {VK_FORMAT_R32_SFLOAT, sampled},
-                                                       .is_depth_planar = true,
-                                                       .normals = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
-                                                       .velocity = {VK_FORMAT_R32G32_SFLOAT, sampled},
-                                                       .is_velocity_plain = true,
-                                                       .ui = {VK_FORMAT_R8G8B8A8_UNORM, sampled},
-                                                       .reactive = {VK_FORMAT_R16_SFLOAT, sampled},
-                                                       .transparency = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
-                                                       .exposure = {VK_FORMAT_R32_SFLOAT, sampled},
-                                                       .has_shadows = true});
-    if (!plan) return failure(plan.error());
+    DARKROOM_TRY_VALUE(const darkroom::Plan plan,
+                       composer.plan({.max_extent = {64, 64},
+                                      .color = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                      .depth = {VK_FORMAT_R32_SFLOAT, sampled},
+                                      .is_depth_planar = true,
+                                      .normals = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                      .velocity = {VK_FORMAT_R32G32_SFLOAT, sampled},
+                                      .is_velocity_plain = true,
+                                      .ui = {VK_FORMAT_R8G8B8A8_UNORM, sampled},
+                                      .reactive = {VK_FORMAT_R16_SFLOAT, sampled},
+                                      .transparency = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                      .exposure = {VK_FORMAT_R32_SFLOAT, sampled},
+                                      .has_shadows = true}));
     const auto is_read = [&](std::string_view image) {
-        return std::ranges::find(plan->frame_images, image) != plan->frame_images.end();
+        return std::ranges::find(plan.frame_images, image) != plan.frame_images.end();
     };
     frame.has_depth = is_read("depth");
     frame.has_normals = is_read("normals");
@@ -196,7 +195,7 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
     frame.has_shadow_depths = is_read("shadows");
     std::uint32_t frames = composer.pre_roll(delta_time);
     for (const double time : timeline.times()) {
-        if (Result<> done = timeline.advance(composer, time); !done) return failure(std::move(done));
+        DARKROOM_TRY(timeline.advance(composer, time));
         frames = std::max(frames, composer.pre_roll(delta_time));
     }
     return frames;
@@ -302,28 +301,27 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                            {FrameImage::Ui, given(ui)}};
     const darkroom::Domain domain =
         desc.target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
-    Result<darkroom::ReferenceChainOutput> made =
-        darkroom::run_reference(composer, {.color = &color,
-                                           .images = images,
-                                           .target_extent = desc.target_extent,
-                                           .lights = input.lights,
-                                           .camera = input.camera,
-                                           .time = input.time,
-                                           .delta_time = input.delta_time,
-                                           .frame_index = input.frame_index,
-                                           .histories = &histories,
-                                           .is_color_associated = input.is_color_associated,
-                                           .target_color = desc.color,
-                                           .target_domain = domain});
-    if (!made) return failure(made.error());
-    left_out = std::move(made->left_out);
-    DevelopedPicture out{.extent = {made->picture.width, made->picture.height}};
+    DARKROOM_TRY_VALUE(darkroom::ReferenceChainOutput made,
+                       darkroom::run_reference(composer, {.color = &color,
+                                                          .images = images,
+                                                          .target_extent = desc.target_extent,
+                                                          .lights = input.lights,
+                                                          .camera = input.camera,
+                                                          .time = input.time,
+                                                          .delta_time = input.delta_time,
+                                                          .frame_index = input.frame_index,
+                                                          .histories = &histories,
+                                                          .is_color_associated = input.is_color_associated,
+                                                          .target_color = desc.color,
+                                                          .target_domain = domain}));
+    left_out = std::move(made.left_out);
+    DevelopedPicture out{.extent = {made.picture.width, made.picture.height}};
     if (desc.target == DevelopTarget::Encoded8) {
-        out.bytes = darkroom::round_to_bytes(made->picture);
+        out.bytes = darkroom::round_to_bytes(made.picture);
         return out;
     }
-    out.pixels.reserve(made->picture.pixels.size() * 4);
-    for (const darkroom::Rgba& pixel : made->picture.pixels)
+    out.pixels.reserve(made.picture.pixels.size() * 4);
+    for (const darkroom::Rgba& pixel : made.picture.pixels)
         for (const double channel : {pixel.r, pixel.g, pixel.b, pixel.a})
             out.pixels.push_back(static_cast<float>(channel));
     return out;

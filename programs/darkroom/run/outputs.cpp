@@ -59,10 +59,9 @@ Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFold
     std::error_code error;
     if (inputs.contains(output))
         return user_error(fmt::format("{}: is also an input, and would be overwritten", printable(output.string())));
-    if (Result<> done = check_folder(output.parent_path(), folders); !done) return done;
+    DARKROOM_TRY(check_folder(output.parent_path(), folders));
     // Reserving the file tells now, before any work, whether it can be written.
-    const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
-    if (!reserved) return failure(reserved.error());
+    DARKROOM_TRY(darkroom::AtomicPath::beside(output));
     return {};
 }
 
@@ -86,8 +85,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
     if (out.empty()) return user_error("-o: an output file is needed");
     const bool is_folder = is_output_folder(out);
     const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
-    if (is_folder)
-        if (Result<> done = check_folder(out, folders); !done) return failure(std::move(done));
+    if (is_folder) DARKROOM_TRY(check_folder(out, folders));
     if (inputs.size() > 1 && !is_folder && !has_name) {
         // Such as a value behind a flag that takes none: --vignette 0.5.
         for (const darkroom::NumberedFile& input : inputs)
@@ -107,8 +105,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
         if (!is_new)
             return user_error(fmt::format("{}: two inputs would be written to it, {} and {}", printable(path.string()),
                                           printable(maker->second.string()), printable(input.string())));
-        if (is_asked_for(number))
-            if (Result<> done = check_output(path, files, folders); !done) return failure(std::move(done));
+        if (is_asked_for(number)) DARKROOM_TRY(check_output(path, files, folders));
         outputs.push_back(std::move(path));
     }
     return outputs;

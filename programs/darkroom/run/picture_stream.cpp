@@ -43,7 +43,7 @@ std::vector<std::byte> PictureStream::pack(darkroom::DevelopedPicture picture) c
 Result<> PictureStream::write(std::span<const std::byte> packed, VkExtent2D extent, std::string_view name) {
     if (!extent_) {
         const std::string head = video_head(desc_.format, extent.width, extent.height, desc_.rate);
-        if (Result<> done = write_all(std::as_bytes(std::span(head))); !done) return done;
+        DARKROOM_TRY(write_all(std::as_bytes(std::span(head))));
         extent_ = extent;
     }
     if (extent_->width != extent.width || extent_->height != extent.height)

@@ -51,7 +51,7 @@ class TimelineReader {
         for (const toml::node& node : *array) {
             const toml::table* const table = node.as_table();
             if (table == nullptr) return failure(at(node, fmt::format("an event is {}: expected a table", show(node))));
-            if (Result<> done = read_event(*table); !done) return failure(done.error());
+            DARKROOM_TRY(read_event(*table));
         }
         std::ranges::stable_sort(out_.events_, {}, &Timeline::Event::time);
         return std::move(out_);
@@ -77,8 +77,7 @@ class TimelineReader {
             return failure(at(
                 table, "the event does nothing: expected set, fire, layer, game, jump, yaw or teleport beside time"));
         for (const auto& [key, node] : table) {
-            const Result<> done = read_key(key, node, event);
-            if (!done) return done;
+            DARKROOM_TRY(read_key(key, node, event));
         }
         out_.events_.push_back(std::move(event));
         return {};
@@ -87,10 +86,9 @@ class TimelineReader {
     Result<> read_key(const toml::key& key, const toml::node& node, Timeline::Event& event) {
         if (key.str() == "time" || key.str() == "over") {
             const bool is_time = key.str() == "time";
-            const Result<float> number = read_number(is_time ? time_row : over_row, node, key.str());
-            if (!number) return failure(number.error());
+            DARKROOM_TRY_VALUE(const float number, read_number(is_time ? time_row : over_row, node, key.str()));
             // Times are kept as they are written: a float has no milliseconds left after some hours.
-            (is_time ? event.time : event.over) = node.value<double>().value_or(double{*number});
+            (is_time ? event.time : event.over) = node.value<double>().value_or(double{number});
             return {};
         }
         if (key.str() == "fire") return read_fire(node, event);
@@ -111,7 +109,7 @@ class TimelineReader {
 
     Result<float> read_number(const ParamInfo& row, const toml::node& node, std::string_view key) {
         std::array<std::uint32_t, 1> words{};
-        if (Result<> done = read_words(row, words, node, key); !done) return failure(done.error());
+        DARKROOM_TRY(read_words(row, words, node, key));
         return std::bit_cast<float>(words[0]);
     }
     Result<> read_words(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
@@ -139,9 +137,8 @@ class TimelineReader {
         return {};
     }
     Result<> read_yaw(const toml::key& key, const toml::node& node, GameEvent& event) {
-        const Result<float> yaw = read_number(yaw_row, node, key.str());
-        if (!yaw) return failure(yaw.error());
-        event.yaw = double{*yaw};
+        DARKROOM_TRY_VALUE(const float yaw, read_number(yaw_row, node, key.str()));
+        event.yaw = double{yaw};
         return {};
     }
 
@@ -150,8 +147,7 @@ class TimelineReader {
         const toml::table* const table = node.as_table();
         if (table == nullptr || table->empty())
             return failure(at(node, fmt::format("{} = {}: expected a table of values", key, show(node))));
-        for (const auto& [name, value] : *table)
-            if (Result<> done = read(name.str(), value); !done) return done;
+        for (const auto& [name, value] : *table) DARKROOM_TRY(read(name.str(), value));
         return {};
     }
 
@@ -192,7 +188,7 @@ class TimelineReader {
             return std::vector<std::uint32_t>(of.begin() + row->word, of.begin() + row->word + row->words);
         };
         if (is_state) remember(*entry, row->name, part(state));
-        if (Result<> done = read_words(*row, words, node, printable(key)); !done) return done;
+        DARKROOM_TRY(read_words(*row, words, node, printable(key)));
         // As in a look and on the command line: an amount that is not 0 switches its effect on.
         const bool is_float = row->kind == darkroom::Kind::Float;
         if (row->is_amount && is_float && entry->state.enabled.on == 0) {
@@ -223,11 +219,10 @@ class TimelineReader {
         if (found == look_.layers.end())
             return failure(at(node, fmt::format("layer '{}': {} has none of this name{}", printable(name),
                                                 look_.shown_name, darkroom::alternatives(name, known, "known are"))));
-        const Result<float> weight = read_number(weight_row, node, printable(name));
-        if (!weight) return failure(weight.error());
+        DARKROOM_TRY_VALUE(const float weight, read_number(weight_row, node, printable(name)));
         if (std::ranges::count(out_.ways_, name, &Timeline::Way::layer) == 0)
             out_.ways_.push_back({.layer = name, .first = found->state.weight});
-        event.weights.push_back({name, *weight});
+        event.weights.push_back({name, weight});
         return {};
     }
 
@@ -242,14 +237,12 @@ class TimelineReader {
 
 Result<Timeline> Timeline::read(const std::filesystem::path& path, Look& look) {
     const std::string shown = printable(path.string());
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(path, {.max_size = darkroom::max_toml_bytes});
-    if (!bytes) return failure(bytes.error());
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    const Result<toml::table> file = darkroom::parse_toml(text, shown);
-    if (!file) return failure(file.error());
-    Result<Timeline> out = TimelineReader(shown, look).read(*file);
-    if (!out) return out;
-    for (Way& way : out->ways_) way.from = way.to = double{way.first};
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes,
+                       darkroom::read_file(path, {.max_size = darkroom::max_toml_bytes}));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    DARKROOM_TRY_VALUE(const toml::table file, darkroom::parse_toml(text, shown));
+    DARKROOM_TRY_VALUE(Timeline out, TimelineReader(shown, look).read(file));
+    for (Way& way : out.ways_) way.from = way.to = double{way.first};
     return out;
 }
 
@@ -287,13 +280,12 @@ Result<> Timeline::advance(Composer& composer, double time) {
     constexpr double rounding = 1e-9;
     if (next_ == 0 || time < last_time_) {
         restart(composer);
-        if (Result<> done = apply(composer, {.values = states_, .fired = {}, .weights = {}}); !done) return done;
+        DARKROOM_TRY(apply(composer, {.values = states_, .fired = {}, .weights = {}}));
     }
     last_time_ = time;
     for (; next_ < events_.size() && events_[next_].time <= time + rounding; ++next_)
-        if (Result<> done = apply(composer, events_[next_]); !done) return done;
-    for (const Way& way : ways_)
-        if (Result<> done = composer.set_layer_weight(way.layer, static_cast<float>(way.at(time))); !done) return done;
+        DARKROOM_TRY(apply(composer, events_[next_]));
+    for (const Way& way : ways_) DARKROOM_TRY(composer.set_layer_weight(way.layer, static_cast<float>(way.at(time))));
     return {};
 }
 

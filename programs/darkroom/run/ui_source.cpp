@@ -64,8 +64,7 @@ std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
 
 Result<> check_ui_files(const darkroom::Look& look) {
     for (const std::filesystem::path& file : ui_files(look))
-        if (const auto start = darkroom::read_file(file, {.max_size = 1, .takes_start = true}); !start)
-            return failure(start.error());
+        DARKROOM_TRY(darkroom::read_file(file, {.max_size = 1, .takes_start = true}));
     return {};
 }
 
@@ -78,17 +77,16 @@ Result<> UiSource::start(Composer& composer) {
     };
     console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print});
     document_.reset();
-    if (Result<> done = load_document(); !done) return done;
+    DARKROOM_TRY(load_document());
     const auto set_class = [document = document_](std::string_view id, std::string_view name, bool is_on) {
         return document != nullptr && document->set_class(id, name, is_on);
     };
     // Time is no limit here: what is over one on a busy machine would be another picture. Instructions are counted.
-    auto made = darkroom::Controllers::create(*console_,
-                                              {.print = print, .milliseconds_per_frame = 1000, .set_class = set_class});
-    if (!made) return failure(std::move(made));
-    controllers_.emplace(std::move(*made));
-    for (const std::string& file : ui_.controllers)
-        if (Result<> done = controllers_->load(file); !done) return done;
+    DARKROOM_TRY_VALUE(auto made,
+                       darkroom::Controllers::create(
+                           *console_, {.print = print, .milliseconds_per_frame = 1000, .set_class = set_class}));
+    controllers_.emplace(std::move(made));
+    for (const std::string& file : ui_.controllers) DARKROOM_TRY(controllers_->load(file));
     return {};
 }
 
@@ -123,31 +121,27 @@ darkroom::Vec2 UiSource::offset_at(double time) const {
 
 Result<> UiSource::advance(Composer& composer, double time) {
     if (ui_.document.empty() && ui_.controllers.empty()) return {};
-    if (composer_ != &composer || time < last_time_)
-        if (Result<> done = start(composer); !done) return done;
+    if (composer_ != &composer || time < last_time_) DARKROOM_TRY(start(composer));
     last_time_ = time;
     game_ = ui_.game;
     for (const GameEvent& event : events_)
         if (event.time <= time)
             for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
-    if (!events_.empty())
-        if (Result<> done = move_interface(composer, offset_at(time)); !done) return done;
+    if (!events_.empty()) DARKROOM_TRY(move_interface(composer, offset_at(time)));
     if (controllers_) controllers_->frame({.time = time, .game = &game_});
     return {};
 }
 
 Result<> UiSource::load_document() {
     if (document_ != nullptr || std::filesystem::path(ui_.document).extension() != ".svg") return {};
-    auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = true});
-    if (!loaded) return failure(std::move(loaded));
-    document_ = std::move(*loaded);
+    DARKROOM_TRY_VALUE(document_, darkroom::HudDocument::load(ui_.document, {.is_headless = true}));
     return {};
 }
 
 Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExtent2D extent) {
     if (ui_.document.empty()) return picture_;
     if (std::filesystem::path(ui_.document).extension() == ".svg") {
-        if (Result<> done = load_document(); !done) return failure(std::move(done));
+        DARKROOM_TRY(load_document());
         for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
         const auto drawn = document_->picture(extent.width, extent.height);
         if (drawn == nullptr || !document_->error().empty()) return darkroom::user_error(document_->error());
@@ -155,9 +149,8 @@ Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExt
         return picture_;
     }
     if (extent.width == extent_.width && extent.height == extent_.height) return picture_;
-    auto made = darkroom::read_ui_image(ui_.document, extent.width, extent.height);
-    if (!made) return failure(std::move(made));
-    picture_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(*made));
+    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height));
+    picture_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(made));
     extent_ = extent;
     return picture_;
 }

@@ -56,9 +56,8 @@ class Loader {
     Result<ResourceData> load(const std::filesystem::path& path, FileUse use) const try {
         if (const auto found = given_.find(path.string()); found != given_.end()) return *found->second;
         if (use == FileUse::Table && path.extension() == ".cube") {
-            Result<TableFile> file = read_cube(path);
-            if (!file) return failure(std::move(file));
-            return ResourceData(std::move(file->table));
+            DARKROOM_TRY_VALUE(TableFile file, read_cube(path));
+            return ResourceData(std::move(file.table));
         }
         const py::object load = py::module_::import("darkroom.files").attr("load_resource");
         return *data_of(load(path.string(), use == FileUse::Table), path.string());

@@ -169,12 +169,11 @@ Result<> Runner::follow(const EditedLook& edits) {
     bool needs_compile = true;
     if (!composer_) {
         Composer composer(*device_, {.frames_in_flight = desc_.frames_in_flight});
-        if (Result<> done = apply(wanted, composer); !done) return done;
+        DARKROOM_TRY(apply(wanted, composer));
         composer_.emplace(std::move(composer));
     } else {
-        const Result<Followed> followed = darkroom::follow(look_, wanted, *composer_);
-        if (!followed) return failure(followed.error());
-        needs_compile = followed->needs_compile;
+        DARKROOM_TRY_VALUE(const Followed followed, darkroom::follow(look_, wanted, *composer_));
+        needs_compile = followed.needs_compile;
     }
     look_ = std::move(wanted);
     edition_ = edits.edition;
@@ -202,15 +201,15 @@ Result<> Runner::move(const Moves& moves) {
     for (const LookLayer& layer : look_.layers) {
         const auto given = moves.layer_weights.find(layer.name);
         const float weight = given == moves.layer_weights.end() ? layer.state.weight : given->second;
-        if (Result<> set = composer_->set_layer_weight(layer.name, weight); !set) return set;
+        DARKROOM_TRY(composer_->set_layer_weight(layer.name, weight));
     }
     for (const std::string& event : moves.fire) composer_->fire(event);
     return {};
 }
 
 Result<> Runner::submit_locked(const EditedLook& edits, const DevelopInput& input, const Moves& moves) {
-    if (Result<> done = follow(edits); !done) return done;
-    if (Result<> moved = move(moves); !moved) return moved;
+    DARKROOM_TRY(follow(edits));
+    DARKROOM_TRY(move(moves));
     return developer_->submit(*composer_, input);
 }
 
@@ -256,7 +255,7 @@ py::array Runner::develop(const EditedLook& edits, const py::dict& frame) {
     Result<DevelopedPicture> picture = [&]() -> Result<DevelopedPicture> {
         const py::gil_scoped_release others_run;
         const std::lock_guard lock(mutex_);
-        if (Result<> done = submit_locked(kept, arrays.input, arrays.moves); !done) return failure(done.error());
+        DARKROOM_TRY(submit_locked(kept, arrays.input, arrays.moves));
         return finish_locked();
     }();
     return array_of_picture(must(std::move(picture)), arrays.input.color_channels);

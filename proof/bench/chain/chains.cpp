@@ -205,8 +205,7 @@ void fill(Composer& composer, const Stack& stack) {
 }
 
 Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc) {
-    if (desc.world != WorldUse::None)
-        if (auto ok = bed.make_world(); !ok) return failure(std::move(ok));
+    if (desc.world != WorldUse::None) DARKROOM_TRY(bed.make_world());
     Chain chain{.composer = std::make_shared<Composer>(
                     bed.device, ComposerDesc{.frames_in_flight = 1, .has_timers = desc.has_timers}),
                 .world = desc.world};
@@ -215,9 +214,7 @@ Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc)
     compile_desc.kernels = desc.kernels;
     compile_desc.fuse = desc.fuse;
     compile_desc.target_color = desc.target_color;
-    auto plan = chain.composer->compile(compile_desc);
-    if (!plan) return failure(std::move(plan));
-    chain.plan = std::move(*plan);
+    DARKROOM_TRY_VALUE(chain.plan, chain.composer->compile(compile_desc));
     chain.compiled_for = compile_desc;
     chain.composer->wait_for_kernels();
     return chain;

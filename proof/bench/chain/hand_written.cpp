@@ -80,17 +80,12 @@ struct KernelRun {
 
 Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage stage,
               std::span<const std::uint32_t> words) {
-    auto kernel = gpu::Kernel::create(bed.context, spec, stage);
-    if (!kernel) return failure(std::move(kernel));
-    run.kernel = std::move(*kernel);
+    DARKROOM_TRY_VALUE(run.kernel, gpu::Kernel::create(bed.context, spec, stage));
     const VkDescriptorSetLayout layout = run.kernel->set_layout();
-    auto sets = gpu::DescriptorSets::create(bed.context, {&layout, 1});
-    if (!sets) return failure(std::move(sets));
-    run.sets = std::move(*sets);
+    DARKROOM_TRY_VALUE(run.sets, gpu::DescriptorSets::create(bed.context, {&layout, 1}));
     const std::size_t bytes = gpu::own_block_size(spec);
-    auto block = gpu::Buffer::create(bed.context, bytes, gpu::block_usage, gpu::Memory::Kind::Upload, "block");
-    if (!block) return failure(std::move(block));
-    run.block = std::move(*block);
+    DARKROOM_TRY_VALUE(run.block,
+                       gpu::Buffer::create(bed.context, bytes, gpu::block_usage, gpu::Memory::Kind::Upload, "block"));
 
     const gpu::Region region{.extent = bed.extent, .image = bed.extent};
     run.output = {.view = bed.target.mip_views[0], .region = region};
@@ -149,11 +144,9 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
                        std::span<const std::uint32_t> words, const TableDesc* table) {
     const auto run = std::make_shared<KernelRun>();
     if (table != nullptr) {
-        auto image = upload_table(bed.context, *table);
-        if (!image) return failure(std::move(image));
-        run->table = std::move(*image);
+        DARKROOM_TRY_VALUE(run->table, upload_table(bed.context, *table));
     }
-    if (auto ok = fill(bed, *run, spec, stage, words); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(fill(bed, *run, spec, stage, words));
     const VkImageLayout layout =
         stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     return Row{.name = std::move(name),

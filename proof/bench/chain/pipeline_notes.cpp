@@ -108,18 +108,14 @@ Result<std::vector<BarePipeline>> PipelineNotes::take() {
     const auto save = [&](const std::vector<std::uint32_t>& words,
                           std::string_view stage) -> Result<std::filesystem::path> {
         const std::filesystem::path path = folder_ / fmt::format("{}.{}.spv", out.size(), stage);
-        if (auto ok = write_file(path, std::as_bytes(std::span(words))); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(write_file(path, std::as_bytes(std::span(words))));
         return path;
     };
     for (const Noted& noted : notes().pipelines) {
         BarePipeline pipeline{.bindings = noted.bindings, .output = noted.output, .blend = noted.blend};
-        auto shader = save(noted.shader, "shader");
-        if (!shader) return failure(std::move(shader));
-        pipeline.shader = std::move(*shader);
+        DARKROOM_TRY_VALUE(pipeline.shader, save(noted.shader, "shader"));
         if (!noted.vertex.empty()) {
-            auto vertex = save(noted.vertex, "vertex");
-            if (!vertex) return failure(std::move(vertex));
-            pipeline.vertex = std::move(*vertex);
+            DARKROOM_TRY_VALUE(pipeline.vertex, save(noted.vertex, "vertex"));
         }
         out.push_back(std::move(pipeline));
     }

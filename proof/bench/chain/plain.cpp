@@ -130,7 +130,7 @@ Result<> Plain::create_layouts() {
                                                    .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                                    .pBindings = bindings.data()};
     VkResult result = context.vk.CreateDescriptorSetLayout(context.device, &set_info, nullptr, &set_layout_);
-    if (auto ok = context.check(result, "creating a set layout"); !ok) return ok;
+    DARKROOM_TRY(context.check(result, "creating a set layout"));
     const VkPushConstantRange range{.stageFlags = stages, .size = sizeof(Values)};
     const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                                  .setLayoutCount = 1,
@@ -138,25 +138,22 @@ Result<> Plain::create_layouts() {
                                                  .pushConstantRangeCount = 1,
                                                  .pPushConstantRanges = &range};
     result = context.vk.CreatePipelineLayout(context.device, &layout_info, nullptr, &layout_);
-    if (auto ok = context.check(result, "creating a pipeline layout"); !ok) return ok;
-    auto sets = gpu::DescriptorSets::create(context, {&set_layout_, 1});
-    if (!sets) return failure(std::move(sets));
-    sets_ = std::move(*sets);
+    DARKROOM_TRY(context.check(result, "creating a pipeline layout"));
+    DARKROOM_TRY_VALUE(sets_, gpu::DescriptorSets::create(context, {&set_layout_, 1}));
     return {};
 }
 
 Result<VkPipelineShaderStageCreateInfo> Plain::load(VkShaderStageFlagBits stage, gpu::ShaderStage kind,
                                                     std::string text) {
     gpu::Context& context = bed_.context;
-    const auto words = context.shaders->compile({.name = "plain pass", .text = std::move(text), .stage = kind});
-    if (!words) return failure(words.error());
+    DARKROOM_TRY_VALUE(const auto words,
+                       context.shaders->compile({.name = "plain pass", .text = std::move(text), .stage = kind}));
     const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                        .codeSize = words->size() * sizeof(std::uint32_t),
-                                        .pCode = words->data()};
+                                        .codeSize = words.size() * sizeof(std::uint32_t),
+                                        .pCode = words.data()};
     VkShaderModule module = VK_NULL_HANDLE;
-    auto made = context.check(context.vk.CreateShaderModule(context.device, &info, nullptr, &module),
-                              "creating a shader module");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context.check(context.vk.CreateShaderModule(context.device, &info, nullptr, &module),
+                               "creating a shader module"));
     modules_.push_back(module);
     return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                            .stage = stage,
@@ -167,22 +164,21 @@ Result<VkPipelineShaderStageCreateInfo> Plain::load(VkShaderStageFlagBits stage,
 Result<> Plain::create_pipeline() {
     gpu::Context& context = bed_.context;
     if (is_compute_) {
-        const auto shader = load(VK_SHADER_STAGE_COMPUTE_BIT, gpu::ShaderStage::Compute,
-                                 fmt::format("#version 460\nlayout(local_size_x = {}, local_size_y = {}) in;\n{}{}{}",
-                                             workgroup_[0], workgroup_[1], head, shade_, compute_main));
-        if (!shader) return failure(shader.error());
+        DARKROOM_TRY_VALUE(const auto shader,
+                           load(VK_SHADER_STAGE_COMPUTE_BIT, gpu::ShaderStage::Compute,
+                                fmt::format("#version 460\nlayout(local_size_x = {}, local_size_y = {}) in;\n{}{}{}",
+                                            workgroup_[0], workgroup_[1], head, shade_, compute_main)));
         const VkComputePipelineCreateInfo info{
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = *shader, .layout = layout_};
+            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = shader, .layout = layout_};
         return context.check(
             context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &info, nullptr, &pipeline_),
             "creating a pipeline");
     }
-    const auto vertex = load(VK_SHADER_STAGE_VERTEX_BIT, gpu::ShaderStage::Vertex, std::string(vertex_source));
-    if (!vertex) return failure(vertex.error());
-    const auto fragment = load(VK_SHADER_STAGE_FRAGMENT_BIT, gpu::ShaderStage::Fragment,
-                               fmt::format("#version 460\n{}{}{}", head, shade_, fragment_main));
-    if (!fragment) return failure(fragment.error());
-    const std::array stages{*vertex, *fragment};
+    DARKROOM_TRY_VALUE(const auto vertex,
+                       load(VK_SHADER_STAGE_VERTEX_BIT, gpu::ShaderStage::Vertex, std::string(vertex_source)));
+    DARKROOM_TRY_VALUE(const auto fragment, load(VK_SHADER_STAGE_FRAGMENT_BIT, gpu::ShaderStage::Fragment,
+                                                 fmt::format("#version 460\n{}{}{}", head, shade_, fragment_main)));
+    const std::array stages{vertex, fragment};
     return context.check(
         create_full_screen_pipeline(
             context.vk, context.device, context.pipeline_cache,
@@ -214,11 +210,9 @@ Result<std::shared_ptr<Plain>> Plain::create(Bed& bed, PlainPass pass, gpu::Stag
     out->values_ = {.extent = {static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)},
                     .texel_size = {1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height)},
                     .tail = values};
-    auto uploaded = upload_table(bed.context, tile);
-    if (!uploaded) return failure(std::move(uploaded));
-    out->tile_ = std::move(*uploaded);
-    if (auto ok = out->create_layouts(); !ok) return failure(std::move(ok));
-    if (auto ok = out->create_pipeline(); !ok) return failure(std::move(ok));
+    DARKROOM_TRY_VALUE(out->tile_, upload_table(bed.context, tile));
+    DARKROOM_TRY(out->create_layouts());
+    DARKROOM_TRY(out->create_pipeline());
     out->write_set();
     return out;
 }

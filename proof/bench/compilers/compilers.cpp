@@ -44,9 +44,8 @@ Result<std::vector<Job>> jobs_on(const gpu::Context& context) {
     std::unordered_set<std::string> texts;
     for (const auto& [stage, wanted] :
          {std::pair(gpu::Stage::Compute, KernelStage::Compute), std::pair(gpu::Stage::Raster, KernelStage::Raster)}) {
-        auto kernels = every_kernel(compose::planner_traits(context, wanted), true);
-        if (!kernels) return failure(std::move(kernels));
-        for (NamedKernel& kernel : *kernels) {
+        DARKROOM_TRY_VALUE(auto kernels, every_kernel(compose::planner_traits(context, wanted), true));
+        for (NamedKernel& kernel : kernels) {
             if (!gpu::usable(context, kernel.spec, stage)) continue;
             if (texts.insert(gpu::kernel_source(kernel.spec, stage)).second) out.push_back({std::move(kernel), stage});
         }
@@ -55,15 +54,13 @@ Result<std::vector<Job>> jobs_on(const gpu::Context& context) {
 }
 
 Result<KernelRow> row_of(gpu::Context& context, const Job& job, Architecture architecture) {
-    const auto kernel = gpu::Kernel::create(context, job.kernel.spec, job.stage);
-    if (!kernel) return failure(kernel.error());
-    const auto statistics = (*kernel)->statistics();
-    if (!statistics) return failure(statistics.error());
-    const auto cost = kernel_cost(*statistics, architecture);
+    DARKROOM_TRY_VALUE(const auto kernel, gpu::Kernel::create(context, job.kernel.spec, job.stage));
+    DARKROOM_TRY_VALUE(const auto statistics, kernel->statistics());
+    const auto cost = kernel_cost(statistics, architecture);
     if (!cost) return machine_error(fmt::format("{}: the driver shows no machine code", job.name()));
-    const auto value = [&](std::string_view name) { return statistics->value(name); };
+    const auto value = [&](std::string_view name) { return statistics.value(name); };
     return KernelRow{.vgprs = value("VGPRs"),
-                     .waves = occupancy(*statistics, architecture),
+                     .waves = occupancy(statistics, architecture),
                      .instructions = value("Instructions"),
                      .alu = cost->alu,
                      .texture = cost->texture,
@@ -73,16 +70,15 @@ Result<KernelRow> row_of(gpu::Context& context, const Job& job, Architecture arc
 
 Result<KernelTable> table_on(const Device& device, std::size_t threads) {
     const Architecture architecture = architecture_of(amd_family(device.info().name));
-    const auto jobs = jobs_on(device.context());
-    if (!jobs) return failure(jobs.error());
+    DARKROOM_TRY_VALUE(const auto jobs, jobs_on(device.context()));
     KernelTable out{.driver = device.info().driver, .rows = {}};
     std::mutex mutex;
     Result<> failed{};
-    parallel_for(jobs->size(), threads, [&](std::size_t i) {
-        auto row = row_of(device.context(), (*jobs)[i], architecture);
+    parallel_for(jobs.size(), threads, [&](std::size_t i) {
+        auto row = row_of(device.context(), jobs[i], architecture);
         const std::scoped_lock lock(mutex);
         if (row)
-            out.rows.emplace((*jobs)[i].name(), *row);
+            out.rows.emplace(jobs[i].name(), *row);
         else if (failed)
             failed = failure(std::move(row));
     });

@@ -59,16 +59,14 @@ Result<> find_device(Bare& bare, const std::string& name) {
 }
 
 Result<> create_device(Bare& bare, const std::string& name) {
-    const auto loader = gpu::open_vulkan_loader();
-    if (!loader) return failure(loader.error());
-    if (auto ok = bare.vk.load_loader(*loader); !ok) return ok;
+    DARKROOM_TRY_VALUE(const auto loader, gpu::open_vulkan_loader());
+    DARKROOM_TRY(bare.vk.load_loader(loader));
     const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
     const VkInstanceCreateInfo instance_info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                              .pApplicationInfo = &application};
-    if (auto ok = check(bare.vk.CreateInstance(&instance_info, nullptr, &bare.instance), "creating an instance"); !ok)
-        return ok;
-    if (auto ok = bare.vk.load_instance(bare.instance, false); !ok) return ok;
-    if (auto ok = find_device(bare, name); !ok) return ok;
+    DARKROOM_TRY(check(bare.vk.CreateInstance(&instance_info, nullptr, &bare.instance), "creating an instance"));
+    DARKROOM_TRY(bare.vk.load_instance(bare.instance, false));
+    DARKROOM_TRY(find_device(bare, name));
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue_info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, .queueCount = 1, .pQueuePriorities = &priority};
@@ -90,15 +88,13 @@ Result<> create_device(Bare& bare, const std::string& name) {
 
 Result<VkPipelineShaderStageCreateInfo> load_stage(Bare& bare, const std::filesystem::path& path,
                                                    VkShaderStageFlagBits stage) {
-    const auto bytes = read_file(path);
-    if (!bytes) return failure(bytes.error());
-    const void* const words = bytes->data();
+    DARKROOM_TRY_VALUE(const auto bytes, read_file(path));
+    const void* const words = bytes.data();
     const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                        .codeSize = bytes->size(),
+                                        .codeSize = bytes.size(),
                                         .pCode = static_cast<const std::uint32_t*>(words)};
     VkShaderModule module = VK_NULL_HANDLE;
-    auto ok = check(bare.vk.CreateShaderModule(bare.device, &info, nullptr, &module), "creating a shader module");
-    if (!ok) return failure(std::move(ok));
+    DARKROOM_TRY(check(bare.vk.CreateShaderModule(bare.device, &info, nullptr, &module), "creating a shader module"));
     bare.modules.push_back(module);
     return VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                            .stage = stage,
@@ -111,26 +107,25 @@ Result<> make_pipeline(Bare& bare, const BarePipeline& wanted) {
                                                    .bindingCount = static_cast<std::uint32_t>(wanted.bindings.size()),
                                                    .pBindings = wanted.bindings.data()};
     VkResult result = bare.vk.CreateDescriptorSetLayout(bare.device, &set_info, nullptr, &bare.sets.emplace_back());
-    if (auto ok = check(result, "creating a set layout"); !ok) return ok;
+    DARKROOM_TRY(check(result, "creating a set layout"));
     const VkPipelineLayoutCreateInfo layout_info{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, .setLayoutCount = 1, .pSetLayouts = &bare.sets.back()};
     result = bare.vk.CreatePipelineLayout(bare.device, &layout_info, nullptr, &bare.layouts.emplace_back());
-    if (auto ok = check(result, "creating a pipeline layout"); !ok) return ok;
+    DARKROOM_TRY(check(result, "creating a pipeline layout"));
 
     const bool is_compute = wanted.vertex.empty();
-    auto shader =
-        load_stage(bare, wanted.shader, is_compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT);
-    if (!shader) return failure(std::move(shader));
+    DARKROOM_TRY_VALUE(
+        auto shader,
+        load_stage(bare, wanted.shader, is_compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT));
     if (is_compute) {
         const VkComputePipelineCreateInfo info{
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = *shader, .layout = bare.layouts.back()};
+            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO, .stage = shader, .layout = bare.layouts.back()};
         VkPipeline& pipeline = bare.pipelines.emplace_back();
         return check(bare.vk.CreateComputePipelines(bare.device, bare.cache, 1, &info, nullptr, &pipeline),
                      "creating a pipeline");
     }
-    auto vertex = load_stage(bare, wanted.vertex, VK_SHADER_STAGE_VERTEX_BIT);
-    if (!vertex) return failure(std::move(vertex));
-    const std::array stages{*vertex, *shader};
+    DARKROOM_TRY_VALUE(auto vertex, load_stage(bare, wanted.vertex, VK_SHADER_STAGE_VERTEX_BIT));
+    const std::array stages{vertex, shader};
     return check(create_full_screen_pipeline(
                      bare.vk, bare.device, bare.cache,
                      {.layout = bare.layouts.back(), .stages = stages, .output = wanted.output, .blend = wanted.blend},
@@ -144,7 +139,7 @@ Result<double> bare_start(const std::string& device_name, const std::vector<Bare
                           std::span<const std::byte> pipeline_cache) {
     const auto start = std::chrono::steady_clock::now();
     Bare bare;
-    if (auto ok = create_device(bare, device_name); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(create_device(bare, device_name));
     const VkPipelineCacheCreateInfo cache_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                                .initialDataSize = pipeline_cache.size(),
                                                .pInitialData = pipeline_cache.data()};

@@ -34,14 +34,10 @@ struct Game {
 /// 144 frames a second of the shipped controllers; a hit every third of a second, or none.
 Result<Row> fight_row(Bed& bed, const std::string& name, bool is_fight) {
     const auto game = std::make_shared<Game>(bed.device);
-    auto created = Controllers::create(game->console);
-    if (!created) return failure(std::move(created));
-    game->controllers.emplace(std::move(*created));
+    DARKROOM_TRY_VALUE(auto created, Controllers::create(game->console));
+    game->controllers.emplace(std::move(created));
     for (const char* const script : {"combat", "visor"})
-        if (auto loaded =
-                game->controllers->load(std::string(DARKROOM_SOURCE_FOLDER "/controllers/") + script + ".lua");
-            !loaded)
-            return failure(std::move(loaded));
+        DARKROOM_TRY(game->controllers->load(std::string(DARKROOM_SOURCE_FOLDER "/controllers/") + script + ".lua"));
     game->table = {{"health", 20.0}, {"has_quad", is_fight}, {"face_pain", false}};
     return Row{.name = name, .host = [game, is_fight] {
                    for (int i = 0; i < frames_of_a_row; ++i, ++game->frame) {

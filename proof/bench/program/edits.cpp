@@ -83,11 +83,10 @@ struct Session {
     Result<> follow() {
         if (version == document.version()) return {};
         version = document.version();
-        const Result<Followed> followed =
-            darkroom::follow(shown, document.look(), composer, {.keeps_what_is_off = true});
-        if (!followed) return failure(followed.error());
+        DARKROOM_TRY_VALUE(const Followed followed,
+                           darkroom::follow(shown, document.look(), composer, {.keeps_what_is_off = true}));
         shown = document.look();
-        return followed->needs_compile ? composer.compile_later(desc) : Result<>();
+        return followed.needs_compile ? composer.compile_later(desc) : Result<>();
     }
 };
 
@@ -118,19 +117,18 @@ double most(const std::vector<double>& values) { return values.empty() ? 0 : *st
 }  // namespace
 
 Result<std::vector<Figure>> edit_figures(Device& device, std::uint32_t edits) {
-    const auto bed = Bed::create(device, edited_extent);
-    if (!bed) return failure(bed.error());
-    if (auto ok = (*bed)->make_world(); !ok) return failure(std::move(ok));
-    Result<Look> look = parse_look(
-        "[post_process]\norder = \"documented\"\nvignette_enabled = true\ndither_enabled = true\n", "documented.toml");
-    if (!look) return failure(std::move(look));
+    DARKROOM_TRY_VALUE(const auto bed, Bed::create(device, edited_extent));
+    DARKROOM_TRY(bed->make_world());
+    DARKROOM_TRY_VALUE(
+        Look look,
+        parse_look("[post_process]\norder = \"documented\"\nvignette_enabled = true\ndither_enabled = true\n",
+                   "documented.toml"));
     Composer composer(device, {.frames_in_flight = 1});
-    if (auto ok = apply(*look, composer, {.keeps_what_is_off = true}); !ok) return failure(std::move(ok));
-    const CompileDesc desc = (*bed)->compile_desc(WorldUse::Full);
-    if (const auto plan = composer.compile(desc); !plan) return failure(plan.error());
-    const auto submitter = Submitter::create(device.context());
-    if (!submitter) return failure(submitter.error());
-    Session session{**bed, composer, **submitter, edit::LookDocument(*look), *look, desc};
+    DARKROOM_TRY(apply(look, composer, {.keeps_what_is_off = true}));
+    const CompileDesc desc = bed->compile_desc(WorldUse::Full);
+    DARKROOM_TRY(composer.compile(desc));
+    DARKROOM_TRY_VALUE(const auto submitter, Submitter::create(device.context()));
+    Session session{*bed, composer, *submitter, edit::LookDocument(look), look, desc};
     session.version = session.document.version();
     std::mt19937 random(29);
     FrameTimes times;

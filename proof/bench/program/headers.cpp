@@ -45,13 +45,13 @@ std::string text_of(const std::set<std::string>& headers) {
 /// Milliseconds of the CPU; nothing: there is no compiler.
 Result<std::optional<double>> compile(const std::string& text, const fs::path& folder) {
     const fs::path file = folder / "host.cpp", log = folder / "log";
-    if (auto ok = write_file(file, std::as_bytes(std::span(text))); !ok) return failure(std::move(ok));
-    auto sample = run_program({DARKROOM_COMPILER, "-std=c++20", "-fsyntax-only", "-I",
-                               DARKROOM_SOURCE_FOLDER "/include", "-I", DARKROOM_GENERATED_HEADERS, file.string()},
-                              log);
-    if (!sample) return failure(std::move(sample));
-    if (!*sample) return std::optional<double>();
-    return std::optional<double>((*sample)->cpu_ms);
+    DARKROOM_TRY(write_file(file, std::as_bytes(std::span(text))));
+    DARKROOM_TRY_VALUE(auto sample,
+                       run_program({DARKROOM_COMPILER, "-std=c++20", "-fsyntax-only", "-I",
+                                    DARKROOM_SOURCE_FOLDER "/include", "-I", DARKROOM_GENERATED_HEADERS, file.string()},
+                                   log));
+    if (!sample) return std::optional<double>();
+    return std::optional<double>(sample->cpu_ms);
 }
 
 struct Header {
@@ -84,12 +84,11 @@ Result<std::vector<Figure>> header_figures(std::uint32_t rounds) {
                 fmt::print(stderr, "headers: left out, Vulkan's do not compile here\n");
                 return figures;
             }
-            const auto with = compile(own, folder);
-            if (!with) return failure(with.error());
-            if (!*with || !*without) return figures;
+            DARKROOM_TRY_VALUE(const auto with, compile(own, folder));
+            if (!with || !*without) return figures;
             if (round == 0) continue;
-            own_ms.push_back(**with);
-            ratios.push_back(**with / **without);
+            own_ms.push_back(*with);
+            ratios.push_back(*with / **without);
         }
         figures.push_back({fmt::format("headers: {}", header.name), median(own_ms), "ms"});
         figures.push_back({fmt::format("headers: {} / Vulkan and the same of the standard library", header.name),

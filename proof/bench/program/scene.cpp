@@ -41,10 +41,9 @@ Result<std::shared_ptr<Drawing>> draw(Bed& bed, scene::Scene scene, Shadows shad
         .extent = scene_extent,
         .cascades = {.filter = shadows == Shadows::Plain ? render::ShadowFilter::Plain : render::ShadowFilter::Soft},
         .draw = {.has_shadows = shadows != Shadows::None, .has_grid = out->scene.has_grid}};
-    auto renderer = render::Renderer::create(bed.device, out->scene, out->assets, desc);
-    if (!renderer) return failure(std::move(renderer));
-    out->renderer.emplace(std::move(*renderer));
-    if (auto done = out->renderer->prepare(out->snapshot); !done) return failure(std::move(done));
+    DARKROOM_TRY_VALUE(auto renderer, render::Renderer::create(bed.device, out->scene, out->assets, desc));
+    out->renderer.emplace(std::move(renderer));
+    DARKROOM_TRY(out->renderer->prepare(out->snapshot));
     return out;
 }
 
@@ -66,16 +65,14 @@ Result<std::shared_ptr<Drawing>> draw_shipped(Bed& bed, const std::string& row, 
         fmt::print(stderr, "{}: left out, {} is not there\n", row, path.string());
         return std::shared_ptr<Drawing>();
     }
-    auto scene = scene::read_scene(path);
-    if (!scene) return failure(std::move(scene));
-    return draw(bed, std::move(*scene), shadows);
+    DARKROOM_TRY_VALUE(auto scene, scene::read_scene(path));
+    return draw(bed, std::move(scene), shadows);
 }
 
 Recipe shipped_recipe(std::string_view row, std::string_view scene, Shadows shadows) {
     return {std::string(row), [=](Bed& bed, const std::string& name) -> Result<Row> {
-                const auto drawing = draw_shipped(bed, name, scene, shadows);
-                if (!drawing) return failure(drawing.error());
-                return *drawing ? drawing_row(name, *drawing) : Row{.name = name};
+                DARKROOM_TRY_VALUE(const auto drawing, draw_shipped(bed, name, scene, shadows));
+                return drawing ? drawing_row(name, drawing) : Row{.name = name};
             }};
 }
 
@@ -88,15 +85,13 @@ struct Post {
 };
 
 Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
-    const auto drawing = draw_shipped(bed, name, "dungeon");
-    if (!drawing) return failure(drawing.error());
-    if (!*drawing) return Row{.name = name};
-    auto look = read_look(path_of("dungeon"), {.is_scene = true});
-    if (!look) return failure(std::move(look));
+    DARKROOM_TRY_VALUE(const auto drawing, draw_shipped(bed, name, "dungeon"));
+    if (!drawing) return Row{.name = name};
+    DARKROOM_TRY_VALUE(auto look, read_look(path_of("dungeon"), {.is_scene = true}));
     const auto post = std::make_shared<Post>();
-    post->drawing = *drawing;
+    post->drawing = drawing;
     post->composer = std::make_unique<Composer>(bed.device, ComposerDesc{.frames_in_flight = 1});
-    if (auto done = apply(*look, *post->composer); !done) return failure(std::move(done));
+    DARKROOM_TRY(apply(look, *post->composer));
     post->frame = post->drawing->renderer->frame();
     for (ImageRef* const image : {&post->frame.color, &post->frame.depth, &post->frame.normals, &post->frame.velocity})
         image->final_layout = image->layout;
@@ -106,14 +101,13 @@ Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
                                      .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
                                      .layer_usage = post->drawing->renderer->layer_usage()},
                          {});
-    if (auto plan = post->composer->compile(desc); !plan) return failure(std::move(plan));
+    DARKROOM_TRY(post->composer->compile(desc));
     post->composer->wait_for_kernels();
-    auto target = gpu::Image::create(bed.context, {.name = "target",
-                                                   .format = desc.target.format,
-                                                   .extent = {scene_extent.width, scene_extent.height, 1},
-                                                   .usage = desc.target.usage});
-    if (!target) return failure(std::move(target));
-    post->target = std::move(*target);
+    DARKROOM_TRY_VALUE(post->target,
+                       gpu::Image::create(bed.context, {.name = "target",
+                                                        .format = desc.target.format,
+                                                        .extent = {scene_extent.width, scene_extent.height, 1},
+                                                        .usage = desc.target.usage}));
     post->frame.target = {.image = post->target.handle,
                           .view = post->target.mip_views[0],
                           .format = desc.target.format,
@@ -148,9 +142,8 @@ scene::Scene boxes() {
 }
 
 Result<Row> boxes_row(Bed& bed, const std::string& name) {
-    const auto drawing = draw(bed, boxes());
-    if (!drawing) return failure(drawing.error());
-    return drawing_row(name, *drawing);
+    DARKROOM_TRY_VALUE(const auto drawing, draw(bed, boxes()));
+    return drawing_row(name, drawing);
 }
 
 /// What a frame of them costs the CPU: the snapshot, culling, sorting, filling buffers.

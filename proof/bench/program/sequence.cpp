@@ -76,20 +76,18 @@ DevelopInput input_of(const FrameFile& frame, std::uint32_t index) {
 Result<> develop_frame(Composer& composer, Developer& developer, const std::filesystem::path& folder,
                        std::uint32_t index, Times& times) {
     const Stopwatch decoding;
-    const auto frame = read_frame(frame_path(folder, index));
-    if (!frame) return failure(frame.error());
+    DARKROOM_TRY_VALUE(const auto frame, read_frame(frame_path(folder, index)));
     add(times[Decode], decoding.elapsed());
 
     const Stopwatch developing;
-    const auto picture = developer.develop(composer, input_of(*frame, index));
-    if (!picture) return failure(picture.error());
+    DARKROOM_TRY_VALUE(const auto picture, developer.develop(composer, input_of(frame, index)));
     Sample developed = developing.elapsed();
     for (const PassTime& pass : composer.times().passes) developed.gpu_ms += pass.milliseconds;
     add(times[Develop], developed);
 
     const Stopwatch encoding;
-    auto done = write_bytes(output_path(folder, names[OneAfterTheOther], index), picture->extent.width,
-                            picture->extent.height, picture->bytes);
+    auto done = write_bytes(output_path(folder, names[OneAfterTheOther], index), picture.extent.width,
+                            picture.extent.height, picture.bytes);
     add(times[Encode], encoding.elapsed());
     return done;
 }
@@ -98,13 +96,12 @@ Result<> develop_one_after_the_other(Device& device, const std::filesystem::path
                                      Times& times) {
     Composer composer(device, {.frames_in_flight = 1, .has_timers = true});
     Developer developer(device, {});
-    if (auto ok = apply(default_look(), composer); !ok) return ok;
+    DARKROOM_TRY(apply(default_look(), composer));
     Times unmeasured;
     // The first frame is when the stack is compiled.
-    if (auto ok = develop_frame(composer, developer, folder, 0, unmeasured); !ok) return ok;
+    DARKROOM_TRY(develop_frame(composer, developer, folder, 0, unmeasured));
     const Stopwatch watch;
-    for (std::uint32_t i = 0; i < frames; ++i)
-        if (auto ok = develop_frame(composer, developer, folder, i, times); !ok) return ok;
+    for (std::uint32_t i = 0; i < frames; ++i) DARKROOM_TRY(develop_frame(composer, developer, folder, i, times));
     times[OneAfterTheOther] = watch.elapsed();
     return {};
 }
@@ -113,15 +110,14 @@ Result<> develop_one_after_the_other(Device& device, const std::filesystem::path
 Result<> run_programs(const SequenceDesc& desc, const std::filesystem::path& folder, Times& times) {
     const std::string input = frames_pattern(folder).string();
     const auto run = [&](Work work, std::vector<std::string> arguments) -> Result<> {
-        const auto sample = run_program(std::move(arguments), folder / "log");
-        if (!sample) return failure(sample.error());
-        if (*sample) times[work] = **sample;
+        DARKROOM_TRY_VALUE(const auto sample, run_program(std::move(arguments), folder / "log"));
+        if (sample) times[work] = *sample;
         return {};
     };
     std::vector<std::string> develop{DARKROOM_PROGRAM, "develop", input, "--out",
                                      output_pattern(folder, names[Program])};
     if (!desc.device.empty()) develop.insert(develop.end(), {"--device", desc.device});
-    if (auto ok = run(Program, std::move(develop)); !ok) return ok;
+    DARKROOM_TRY(run(Program, std::move(develop)));
     return run(Oiiotool, {"oiiotool", "--frames", fmt::format("0-{}", desc.frames - 1), input, "--ch", "R,G,B", "-d",
                           "uint8", "-o", output_pattern(folder, names[Oiiotool])});
 }
@@ -162,14 +158,13 @@ std::vector<std::string> sequence_row_names() { return {names.begin(), names.end
 
 Result<SequenceReport> measure_sequence(Device& device, const SequenceDesc& desc) {
     const TemporaryFolder folder;
-    if (auto ok = write_frames(folder.path(), desc.extent, desc.frames); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(write_frames(folder.path(), desc.extent, desc.frames));
     SequenceReport report{.frames = desc.frames};
     for (const std::string_view name : names) report.rows.push_back({.name = std::string(name)});
     for (std::uint32_t round = 0; round < desc.rounds; ++round) {
         Times times;
-        if (auto ok = develop_one_after_the_other(device, folder.path(), desc.frames, times); !ok)
-            return failure(std::move(ok));
-        if (auto ok = run_programs(desc, folder.path(), times); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(develop_one_after_the_other(device, folder.path(), desc.frames, times));
+        DARKROOM_TRY(run_programs(desc, folder.path(), times));
         for (std::size_t i = 0; i < times.size(); ++i)
             report.rows[i].samples.push_back({.cpu_ms = times[i].cpu_ms / desc.frames,
                                               .wall_ms = times[i].wall_ms / desc.frames,
@@ -177,9 +172,8 @@ Result<SequenceReport> measure_sequence(Device& device, const SequenceDesc& desc
     }
     report.figures = figures_of(report.rows);
     if (report.rows[Program].samples.back().wall_ms > 0) {
-        auto differing = differing_pixels(folder.path(), desc.frames);
-        if (!differing) return failure(std::move(differing));
-        report.figures.push_back(std::move(*differing));
+        DARKROOM_TRY_VALUE(auto differing, differing_pixels(folder.path(), desc.frames));
+        report.figures.push_back(std::move(differing));
     }
     std::erase_if(report.rows, [](const Row& row) {
         const bool is_absent = row.samples.back().wall_ms == 0;

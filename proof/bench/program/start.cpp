@@ -38,7 +38,7 @@ Result<std::vector<std::byte>> pipeline_cache_of(const gpu::Context& context) {
     std::vector<std::byte> data(size);
     if (result == VK_SUCCESS)
         result = vk.GetPipelineCacheData(context.device, context.pipeline_cache, &size, data.data());
-    if (auto ok = context.check(result, "reading the pipeline cache"); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(context.check(result, "reading the pipeline cache"));
     data.resize(size);
     return data;
 }
@@ -47,40 +47,30 @@ Result<std::vector<std::byte>> pipeline_cache_of(const gpu::Context& context) {
 Result<StartRun> start(const std::string& select, VkExtent2D extent, const std::filesystem::path* notes_folder) {
     StartRun run;
     double since = now_ms();
-    auto device = Device::create({.select = select});
-    if (!device) return failure(std::move(device));
+    DARKROOM_TRY_VALUE(auto device, Device::create({.select = select}));
     run.times.device = now_ms() - since;
-    auto bed = Bed::create(*device, extent);
-    if (!bed) return failure(std::move(bed));
-    auto submitter = Submitter::create(device->context());
-    if (!submitter) return failure(std::move(submitter));
-    auto commands = (*submitter)->begin();
-    if (!commands) return failure(std::move(commands));
+    DARKROOM_TRY_VALUE(auto bed, Bed::create(device, extent));
+    DARKROOM_TRY_VALUE(auto submitter, Submitter::create(device.context()));
+    DARKROOM_TRY_VALUE(auto commands, submitter->begin());
     std::optional<PipelineNotes> notes;
-    if (notes_folder != nullptr) notes.emplace(device->context(), *notes_folder);
+    if (notes_folder != nullptr) notes.emplace(device.context(), *notes_folder);
 
     since = now_ms() - run.times.device;
-    Composer composer(*device, {.frames_in_flight = 1});
+    Composer composer(device, {.frames_in_flight = 1});
     fill(composer, default_stack());
-    auto plan = composer.compile((*bed)->compile_desc());
-    if (!plan) return failure(std::move(plan));
+    DARKROOM_TRY(composer.compile(bed->compile_desc()));
     run.times.compiled = now_ms() - since;
-    auto done = composer.record(*commands, (*bed)->frame());
-    if (done)
-        done = device->context().check(device->context().vk.EndCommandBuffer(*commands), "ending a command buffer");
-    if (done) done = (*submitter)->submit();
+    auto done = composer.record(commands, bed->frame());
+    if (done) done = device.context().check(device.context().vk.EndCommandBuffer(commands), "ending a command buffer");
+    if (done) done = submitter->submit();
     run.times.dispatch = now_ms() - since;
-    if (done) done = (*submitter)->wait();
+    if (done) done = submitter->wait();
     if (!done) return failure(std::move(done));
     run.times.finished = now_ms() - since;
 
     if (!notes) return run;
-    auto pipelines = notes->take();
-    if (!pipelines) return failure(std::move(pipelines));
-    run.pipelines = std::move(*pipelines);
-    auto cache = pipeline_cache_of(device->context());
-    if (!cache) return failure(std::move(cache));
-    run.pipeline_cache = std::move(*cache);
+    DARKROOM_TRY_VALUE(run.pipelines, notes->take());
+    DARKROOM_TRY_VALUE(run.pipeline_cache, pipeline_cache_of(device.context()));
     return run;
 }
 
@@ -91,16 +81,14 @@ Result<std::vector<Figure>> start_figures(const std::string& select, VkExtent2D 
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path(error) / fmt::format("darkroom_bench_{}", getpid());
     // This run also warms the caches.
-    auto first = start(select, extent, &folder);
-    if (!first) return failure(std::move(first));
-    auto device = Device::create({.select = select});
-    if (!device) return failure(std::move(device));
-    const std::string name = device->info().name;
+    DARKROOM_TRY_VALUE(auto first, start(select, extent, &folder));
+    DARKROOM_TRY_VALUE(auto device, Device::create({.select = select}));
+    const std::string name = device.info().name;
 
     std::vector<double> bare, created, compiled, dispatch, finished, ratios;
     for (std::uint32_t round = 0; round <= rounds; ++round) {
         const auto own = start(select, extent, nullptr);
-        const auto least = bare_start(name, first->pipelines, first->pipeline_cache);
+        const auto least = bare_start(name, first.pipelines, first.pipeline_cache);
         if (!own || !least) {
             std::filesystem::remove_all(folder, error);
             return failure(own ? least.error() : own.error());
@@ -119,7 +107,7 @@ Result<std::vector<Figure>> start_figures(const std::string& select, VkExtent2D 
         {"start: default stack compiled", median(compiled), "ms"},
         {"start: first dispatch submitted", median(dispatch), "ms"},
         {"start: first frame finished", median(finished), "ms"},
-        {fmt::format("start: bare device and {} pipelines", first->pipelines.size()), median(bare), "ms"},
+        {fmt::format("start: bare device and {} pipelines", first.pipelines.size()), median(bare), "ms"},
         {"start: first dispatch / bare", median(ratios), "", 1.5},
     };
 }

@@ -59,9 +59,8 @@ std::string KernelTable::text() const {
 }
 
 Result<KernelTable> KernelTable::read(const std::filesystem::path& path) {
-    const auto bytes = read_file(path);
-    if (!bytes) return failure(bytes.error());
-    std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    DARKROOM_TRY_VALUE(const auto bytes, read_file(path));
+    std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     KernelTable out;
     for (std::size_t number = 1; !rest.empty(); ++number) {
         const std::string_view line = rest.substr(0, rest.find('\n'));

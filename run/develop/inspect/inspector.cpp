@@ -39,13 +39,13 @@ struct Texels {
         auto out = std::make_shared<Texels>();
         for (std::uint32_t first = 0; first < count; first += max_layers) {
             // An image of one layer has no views of layers.
-            auto image =
+            DARKROOM_TRY_VALUE(
+                auto image,
                 gpu::Image::create(context, {.name = "inspected values",
                                              .format = value_format,
                                              .array_layers = std::clamp(count - first, 2U, max_layers),
-                                             .usage = target_usage(context) | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-            if (!image) return failure(std::move(image));
-            out->images.push_back(std::move(*image));
+                                             .usage = target_usage(context) | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+            out->images.push_back(std::move(image));
         }
         return std::shared_ptr<const Texels>(std::move(out));
     }
@@ -174,24 +174,21 @@ CompileDesc Inspector::State::compile_desc() const {
 }
 
 Result<> Inspector::State::make_images() {
-    auto made = Texels::create(*context, values() * desc.max_pixels);
-    if (!made) return failure(std::move(made));
-    texels = std::move(*made);
+    DARKROOM_TRY_VALUE(texels, Texels::create(*context, values() * desc.max_pixels));
     const CompileDesc wanted_desc = compile_desc();
     const VkExtent2D extent = wanted_desc.target_extent.width != 0 ? wanted_desc.target_extent : wanted_desc.max_extent;
-    auto image = gpu::Image::create(*context, {.name = "inspector's target",
-                                               .format = value_format,
-                                               .extent = {extent.width, extent.height, 1},
-                                               .usage = target_usage(*context)});
-    if (!image) return failure(std::move(image));
-    target = std::make_shared<const gpu::Image>(std::move(*image));
+    DARKROOM_TRY_VALUE(auto image, gpu::Image::create(*context, {.name = "inspector's target",
+                                                                 .format = value_format,
+                                                                 .extent = {extent.width, extent.height, 1},
+                                                                 .usage = target_usage(*context)}));
+    target = std::make_shared<const gpu::Image>(std::move(image));
     return {};
 }
 
 Result<> Inspector::State::start_compile() {
     first_id += ids_of_a_stack;
     is_compiling = true;
-    if (auto ok = make_images(); !ok) return ok;
+    DARKROOM_TRY(make_images());
     return composer.compile_later(compile_desc());
 }
 
@@ -202,17 +199,15 @@ Inspector::~Inspector() = default;
 
 Result<> Inspector::update(const Composer& source, const CompileDesc& compiled, const Frame& frame) {
     State& state = *state_;
-    auto is_edited = state.stack.follow(source, state.composer, frame.time, frame.camera);
-    if (!is_edited) return failure(std::move(is_edited));
-    if (!*is_edited && state.source_desc && is_same(*state.source_desc, compiled)) return {};
+    DARKROOM_TRY_VALUE(auto is_edited, state.stack.follow(source, state.composer, frame.time, frame.camera));
+    if (!is_edited && state.source_desc && is_same(*state.source_desc, compiled)) return {};
     state.source_desc = compiled;
     return state.start_compile();
 }
 
 Result<> Inspector::wait() {
     if (!std::exchange(state_->is_compiling, false)) return {};
-    auto made = state_->composer.compile(state_->compile_desc());
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(state_->composer.compile(state_->compile_desc()));
     state_->composer.wait_for_kernels();
     return {};
 }
@@ -279,10 +274,8 @@ Result<> Inspector::State::prepare(Slot& slot) const {
     slot.texels = texels;
     slot.number = 0;
     if (slot.buffer.memory.size >= texels->bytes()) return {};
-    auto buffer = gpu::Buffer::create(*context, texels->bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                      gpu::Memory::Kind::Readback, "inspected values");
-    if (!buffer) return failure(std::move(buffer));
-    slot.buffer = std::move(*buffer);
+    DARKROOM_TRY_VALUE(slot.buffer, gpu::Buffer::create(*context, texels->bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                        gpu::Memory::Kind::Readback, "inspected values"));
     return {};
 }
 
@@ -317,10 +310,9 @@ Result<std::uint64_t> Inspector::record(VkCommandBuffer commands, const Composer
     if (pixels.size() > state.desc.max_pixels)
         return user_error(
             fmt::format("inspector: {} pixels: allowed are at most {}", pixels.size(), state.desc.max_pixels));
-    auto followed = state.stack.follow_values(source, state.composer, frame.time, frame.camera);
-    if (!followed) return failure(std::move(followed));
+    DARKROOM_TRY(state.stack.follow_values(source, state.composer, frame.time, frame.camera));
     Slot& slot = state.slots[state.recordings % state.slots.size()];
-    if (auto ok = state.prepare(slot); !ok) return failure(std::move(ok));
+    DARKROOM_TRY(state.prepare(slot));
     state.old_targets.resize(state.slots.size());
     state.old_targets[state.recordings % state.slots.size()] = state.target;
     state.add_watched(slot, pixels, views);

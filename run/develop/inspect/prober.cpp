@@ -46,11 +46,10 @@ struct Prober::State {
         gpu::Context& context = device.context();
         const UploadLayers layers = layers_of(input);
         upload.reset();
-        if (auto ok = upload.prepare(context, input, layers); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(upload.prepare(context, input, layers));
         const Frame frame = upload.frame(input);
-        if (auto ok = inspector.update(composer, compile_desc_for(device, input, desc), frame); !ok)
-            return failure(std::move(ok));
-        if (auto ok = inspector.wait(); !ok) return failure(std::move(ok));
+        DARKROOM_TRY(inspector.update(composer, compile_desc_for(device, input, desc), frame));
+        DARKROOM_TRY(inspector.wait());
         Result<std::uint64_t> number = 0;
         auto done = gpu::submit_and_wait(context, "probing a picture", [&](VkCommandBuffer commands) {
             upload.record(context, commands);
@@ -90,21 +89,19 @@ Result<Inspection> Prober::probe(const Composer& composer, const DevelopInput& i
 Result<std::optional<NonFiniteBirth>> Prober::find_birth(const Composer& composer, const DevelopInput& input,
                                                          VkOffset2D from) {
     gpu::Context& context = state_->device.context();
-    auto image = gpu::Image::create(context, {.name = "a probed picture",
-                                              .format = view_use.format,
-                                              .extent = {input.extent.width, input.extent.height, 1},
-                                              .usage = view_use.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    if (!image) return failure(std::move(image));
+    DARKROOM_TRY_VALUE(auto image,
+                       gpu::Image::create(context, {.name = "a probed picture",
+                                                    .format = view_use.format,
+                                                    .extent = {input.extent.width, input.extent.height, 1},
+                                                    .usage = view_use.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
     constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    auto readback = Readback::create(context, reference_to(*image, layout, layout));
-    if (!readback) return failure(std::move(readback));
+    DARKROOM_TRY_VALUE(auto readback, Readback::create(context, reference_to(image, layout, layout)));
     for (std::size_t value = 0; value <= composer.size(); ++value) {
         state_->inspector.abandon();
         const InspectorView view{.entry = value == 0 ? scene_color : composer.entry(value - 1),
-                                 .target = reference_to(*image, VK_IMAGE_LAYOUT_UNDEFINED, layout)};
-        auto done = state_->run(composer, input, {}, {&view, 1}, &*readback);
-        if (!done) return failure(std::move(done));
-        auto found = non_finite(readback->floats(4), input.extent, from);
+                                 .target = reference_to(image, VK_IMAGE_LAYOUT_UNDEFINED, layout)};
+        DARKROOM_TRY(state_->run(composer, input, {}, {&view, 1}, &readback));
+        auto found = non_finite(readback.floats(4), input.extent, from);
         if (!found) continue;
         if (value > 0) found->entry = value - 1;
         return found;

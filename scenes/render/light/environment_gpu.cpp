@@ -24,9 +24,8 @@ Result<VkSampler> create_sampler(gpu::Context& context) {
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .maxLod = VK_LOD_CLAMP_NONE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
-                                  "creating the sampler of the environment");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
+                               "creating the sampler of the environment"));
     return sampler;
 }
 
@@ -52,13 +51,13 @@ void write_pixels(const Picture& picture, VkFormat format, std::byte* out) {
 Result<gpu::Image> upload(gpu::Context& context, std::span<const Picture> levels, const char* name) {
     const VkFormat format = format_for(context, levels[0]);
     const VkDeviceSize texel = format == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8;
-    Result<gpu::Image> image =
+    DARKROOM_TRY_VALUE(
+        gpu::Image image,
         gpu::Image::create(context, {.name = name,
                                      .format = format,
                                      .extent = {levels[0].width, levels[0].height, 1},
                                      .mip_levels = static_cast<std::uint32_t>(levels.size()),
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!image) return image;
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     VkDeviceSize size = 0;
     std::vector<VkBufferImageCopy> copies;
     for (const Picture& level : levels) {
@@ -69,16 +68,15 @@ Result<gpu::Image> upload(gpu::Context& context, std::span<const Picture> levels
                           .imageExtent = {level.width, level.height, 1}});
         size += VkDeviceSize{level.width} * level.height * texel;
     }
-    Result<gpu::Buffer> staging = gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                      gpu::Memory::Kind::Upload, "environment upload");
-    if (!staging) return failure(std::move(staging));
+    DARKROOM_TRY_VALUE(gpu::Buffer staging, gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                                gpu::Memory::Kind::Upload, "environment upload"));
     for (std::size_t i = 0; i < levels.size(); ++i)
-        write_pixels(levels[i], format, staging->memory.mapped + copies[i].bufferOffset);
+        write_pixels(levels[i], format, staging.memory.mapped + copies[i].bufferOffset);
     Result<> uploaded = gpu::submit_and_wait(context, "uploading the environment", [&](VkCommandBuffer commands) {
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        context.vk.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                         static_cast<std::uint32_t>(copies.size()), copies.data());
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     });
     if (!uploaded) return failure(std::move(uploaded));
@@ -91,9 +89,7 @@ Result<GpuEnvironment> GpuEnvironment::create(gpu::Context& context, const std::
     constexpr std::uint32_t table_size = 64, level_count = 6, min_width = 64, max_width = 256;
     GpuEnvironment out;
     out.context = &context;
-    Result<VkSampler> sampler = create_sampler(context);
-    if (!sampler) return failure(std::move(sampler));
-    out.sampler = *sampler;
+    DARKROOM_TRY_VALUE(out.sampler, create_sampler(context));
     out.is_given = skybox && !skybox->empty();
 
     std::vector<Picture> sky(1, Picture(1, 1)), table(1, Picture(1, 1)), mirror(1, Picture(1, 1));

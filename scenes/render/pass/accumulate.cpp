@@ -76,10 +76,7 @@ Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std
     out.is_weighed_ = is_weighed;
     const auto make = [&](std::unique_ptr<gpu::Kernel>& kernel, gpu::KernelSpec spec) -> Result<> {
         spec.workgroup = gpu::usual_workgroup(context);
-        Result<std::unique_ptr<gpu::Kernel>> made =
-            gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec));
-        if (!made) return failure(std::move(made));
-        kernel = std::move(*made);
+        DARKROOM_TRY_VALUE(kernel, gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec)));
         return {};
     };
     const std::string drawn = "drawn_color", sum = "sum";
@@ -91,17 +88,13 @@ Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std
     if (!made) return failure(std::move(made));
     const std::array layouts{out.first_->set_layout(), out.next_->set_layout(), out.next_->set_layout(),
                              out.mean_->set_layout()};
-    Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
-    if (!sets) return failure(std::move(sets));
-    out.sets_ = std::move(*sets);
+    DARKROOM_TRY_VALUE(out.sets_, gpu::DescriptorSets::create(context, layouts));
     const VkDeviceSize alignment = context.traits.uniform_alignment;
     // That of the form with the most images is the largest.
     out.block_stride_ = (gpu::own_block_size(out.next_->spec()) + alignment - 1) / alignment * alignment;
-    Result<gpu::Buffer> blocks =
-        gpu::Buffer::create(context, out.block_stride_ * layouts.size(), gpu::block_usage, gpu::Memory::Kind::Constants,
-                            "blocks of the scene's accumulation");
-    if (!blocks) return failure(std::move(blocks));
-    out.blocks_ = std::move(*blocks);
+    DARKROOM_TRY_VALUE(out.blocks_,
+                       gpu::Buffer::create(context, out.block_stride_ * layouts.size(), gpu::block_usage,
+                                           gpu::Memory::Kind::Constants, "blocks of the scene's accumulation"));
     return out;
 }
 
@@ -111,10 +104,9 @@ Result<> Accumulate::resize(const Targets& targets) {
     if (context_->supports(sum_format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
     std::array<gpu::Image, 2> larger;
     for (gpu::Image& sum : larger) {
-        Result<gpu::Image> made = gpu::Image::create(
-            *context_, {.name = "scene sum", .format = sum_format, .extent = extent, .usage = usage});
-        if (!made) return failure(std::move(made));
-        sum = std::move(*made);
+        DARKROOM_TRY_VALUE(
+            sum, gpu::Image::create(*context_,
+                                    {.name = "scene sum", .format = sum_format, .extent = extent, .usage = usage}));
     }
     sums_ = std::move(larger);
     const gpu::Binding color = bound(targets.color);

@@ -145,9 +145,8 @@ Result<BillboardPass> BillboardPass::create(gpu::Context& context, const PassSet
     pass.state_ = std::make_shared<State>();
     pass.state_->context = &context;
     for (const Kind kind : {Kind::Sprite, Kind::Alpha, Kind::Additive}) {
-        Result<gpu::Pipeline> made = gpu::Pipeline::create(context, pipeline_desc(kind, setup, scene));
-        if (!made) return failure(std::move(made));
-        pass.state_->pipelines[static_cast<std::size_t>(kind)] = std::move(*made);
+        DARKROOM_TRY_VALUE(gpu::Pipeline made, gpu::Pipeline::create(context, pipeline_desc(kind, setup, scene)));
+        pass.state_->pipelines[static_cast<std::size_t>(kind)] = std::move(made);
     }
     return pass;
 }
@@ -162,11 +161,9 @@ Result<> BillboardPass::prepare(const scene::Snapshot& snapshot, GpuScene& scene
 
     if (own.capacity < list.size()) {
         const std::size_t capacity = list.size() + list.size() / 2;
-        Result<gpu::Buffer> made =
-            gpu::Buffer::create(*state_->context, capacity * sizeof(Square), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
-                                gpu::Memory::Kind::Upload, "billboards");
-        if (!made) return failure(std::move(made));
-        own.squares = std::move(*made);
+        DARKROOM_TRY_VALUE(own.squares, gpu::Buffer::create(*state_->context, capacity * sizeof(Square),
+                                                            VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                                                            gpu::Memory::Kind::Upload, "billboards"));
         own.capacity = capacity;
     }
     for (std::uint32_t i = 0; i < list.size(); ++i) {
@@ -176,9 +173,8 @@ Result<> BillboardPass::prepare(const scene::Snapshot& snapshot, GpuScene& scene
             ++own.runs.back().count;
             continue;
         }
-        Result<VkDescriptorSet> texture = scene.texture(pending.image);
-        if (!texture) return failure(std::move(texture));
-        own.runs.push_back({.kind = pending.kind, .texture = *texture, .first = i, .count = 1});
+        DARKROOM_TRY_VALUE(VkDescriptorSet texture, scene.texture(pending.image));
+        own.runs.push_back({.kind = pending.kind, .texture = texture, .first = i, .count = 1});
     }
     return {};
 }

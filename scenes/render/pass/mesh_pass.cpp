@@ -60,22 +60,20 @@ struct MeshPass::State {
 Result<const gpu::Pipeline*> MeshPass::State::bind(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene,
                                                    const Batch& batch, MeshKind kind) {
     const gpu::Dispatch& vk = context->vk;
-    Result<const gpu::Pipeline*> pipeline = pipelines.find(variant_of(draw, batch, scene, kind));
-    if (!pipeline) return pipeline;
-    Result<VkDescriptorSet> textures = scene.textures(draw.snapshot->materials[batch.material]);
-    if (!textures) return failure(std::move(textures));
-    const bool is_new_pipeline = (*pipeline)->handle != bound_pipeline;
-    if (is_new_pipeline) vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, (*pipeline)->handle);
+    DARKROOM_TRY_VALUE(auto* pipeline, pipelines.find(variant_of(draw, batch, scene, kind)));
+    DARKROOM_TRY_VALUE(VkDescriptorSet textures, scene.textures(draw.snapshot->materials[batch.material]));
+    const bool is_new_pipeline = pipeline->handle != bound_pipeline;
+    if (is_new_pipeline) vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->handle);
     if (bound_pipeline == VK_NULL_HANDLE) {
         // All layouts of this pass are compatible, so it outlives a change of pipeline.
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, (*pipeline)->layout, 0, 1, &draw.frame_set,
-                                 0, nullptr);
-    }
-    if (*textures != bound_textures)
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, (*pipeline)->layout, 1, 1, &*textures, 0,
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->layout, 0, 1, &draw.frame_set, 0,
                                  nullptr);
-    bound_pipeline = (*pipeline)->handle;
-    bound_textures = *textures;
+    }
+    if (textures != bound_textures)
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline->layout, 1, 1, &textures, 0,
+                                 nullptr);
+    bound_pipeline = pipeline->handle;
+    bound_textures = textures;
     return pipeline;
 }
 
@@ -83,8 +81,7 @@ Result<> MeshPass::State::record(VkCommandBuffer commands, const MeshDraw& draw,
                                  const std::vector<Batch>& batches, MeshKind kind) {
     forget_bindings();
     for (const Batch& batch : batches) {
-        Result<const gpu::Pipeline*> pipeline = bind(commands, draw, scene, batch, kind);
-        if (!pipeline) return failure(std::move(pipeline));
+        DARKROOM_TRY(bind(commands, draw, scene, batch, kind));
         if (kind == MeshKind::RoomEdges) {
             scene.draw_box_edges(commands, draw.first_instance + batch.first, batch.count);
         } else {
@@ -100,13 +97,12 @@ Result<> MeshPass::State::record_normal_arrows(VkCommandBuffer commands, const M
     forget_bindings();
     for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent}) {
         for (const Batch& batch : *batches) {
-            Result<const gpu::Pipeline*> pipeline = bind(commands, draw, scene, batch, MeshKind::NormalArrows);
-            if (!pipeline) return failure(std::move(pipeline));
+            DARKROOM_TRY_VALUE(auto* pipeline, bind(commands, draw, scene, batch, MeshKind::NormalArrows));
             const GpuMesh& mesh = scene.mesh(batch.mesh);
             scene.bind_vertices(commands, mesh);
             for (std::uint32_t i = 0; i < batch.count; ++i) {
                 const std::uint32_t instance = draw.first_instance + batch.first + i;
-                vk.CmdPushConstants(commands, (*pipeline)->layout,
+                vk.CmdPushConstants(commands, pipeline->layout,
                                     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof instance,
                                     &instance);
                 vk.CmdDraw(commands, 2, mesh.vertex_count, 0, 0);
@@ -128,8 +124,7 @@ MeshPass MeshPass::create(gpu::Context& context, const PassSetup& setup, const G
 Result<> MeshPass::prepare(const MeshDraw& draw, const GpuScene& scene) {
     const auto make = [&](const std::vector<Batch>& batches, MeshKind kind) -> Result<> {
         for (const Batch& batch : batches) {
-            Result<const gpu::Pipeline*> made = state_->pipelines.find(variant_of(draw, batch, scene, kind));
-            if (!made) return failure(std::move(made));
+            DARKROOM_TRY(state_->pipelines.find(variant_of(draw, batch, scene, kind)));
         }
         return {};
     };
@@ -138,7 +133,7 @@ Result<> MeshPass::prepare(const MeshDraw& draw, const GpuScene& scene) {
     if (draw.look.has_normal_arrows) kinds.push_back(MeshKind::NormalArrows);
     for (const MeshKind kind : kinds)
         for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent})
-            if (Result<> made = make(*batches, kind); !made) return made;
+            DARKROOM_TRY(make(*batches, kind));
     return make(draw.list->wireframe, MeshKind::RoomEdges);
 }
 
@@ -147,16 +142,14 @@ Result<> MeshPass::record_opaque(VkCommandBuffer commands, const MeshDraw& draw,
 }
 
 Result<> MeshPass::record_transparent(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
-    Result<> rooms = state_->record(commands, draw, scene, draw.list->wireframe, MeshKind::RoomEdges);
-    if (!rooms) return rooms;
+    DARKROOM_TRY(state_->record(commands, draw, scene, draw.list->wireframe, MeshKind::RoomEdges));
     return state_->record(commands, draw, scene, draw.list->transparent, surface_kind(draw.look));
 }
 
 Result<> MeshPass::record_overlays(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
     if (draw.look.has_edges) {
         for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent}) {
-            Result<> done = state_->record(commands, draw, scene, *batches, MeshKind::Overlay);
-            if (!done) return done;
+            DARKROOM_TRY(state_->record(commands, draw, scene, *batches, MeshKind::Overlay));
         }
     }
     if (!draw.look.has_normal_arrows) return {};

@@ -41,9 +41,8 @@ void MeshPipelines::create(gpu::Context& context, const PassSetup& setup, VkDesc
 
 Result<const gpu::Pipeline*> MeshPipelines::find(const MeshVariant& variant) {
     if (const auto found = pipelines_.find(variant); found != pipelines_.end()) return &found->second;
-    Result<gpu::Pipeline> made = gpu::Pipeline::create(*context_, describe(variant));
-    if (!made) return failure(std::move(made));
-    return &pipelines_.emplace(variant, std::move(*made)).first->second;
+    DARKROOM_TRY_VALUE(gpu::Pipeline made, gpu::Pipeline::create(*context_, describe(variant)));
+    return &pipelines_.emplace(variant, std::move(made)).first->second;
 }
 
 gpu::PipelineDesc MeshPipelines::describe(const MeshVariant& variant) const {

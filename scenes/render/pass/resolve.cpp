@@ -68,20 +68,13 @@ Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& form
     Resolve out;
     out.context_ = &context;
     const gpu::KernelSpec spec = spec_of(formats, gpu::usual_workgroup(context));
-    Result<std::unique_ptr<gpu::Kernel>> kernel =
-        gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec));
-    if (!kernel) return failure(std::move(kernel));
-    out.kernel_ = std::move(*kernel);
+    DARKROOM_TRY_VALUE(out.kernel_, gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec)));
     const std::vector<VkDescriptorSetLayout> layouts(slots, out.kernel_->set_layout());
-    Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
-    if (!sets) return failure(std::move(sets));
-    out.sets_ = std::move(*sets);
+    DARKROOM_TRY_VALUE(out.sets_, gpu::DescriptorSets::create(context, layouts));
     const VkDeviceSize alignment = context.traits.uniform_alignment;
     out.block_stride_ = (gpu::own_block_size(spec) + alignment - 1) / alignment * alignment;
-    Result<gpu::Buffer> blocks = gpu::Buffer::create(context, out.block_stride_ * slots, gpu::block_usage,
-                                                     gpu::Memory::Kind::Constants, "blocks of the scene's resolve");
-    if (!blocks) return failure(std::move(blocks));
-    out.blocks_ = std::move(*blocks);
+    DARKROOM_TRY_VALUE(out.blocks_, gpu::Buffer::create(context, out.block_stride_ * slots, gpu::block_usage,
+                                                        gpu::Memory::Kind::Constants, "blocks of the scene's resolve"));
     return out;
 }
 

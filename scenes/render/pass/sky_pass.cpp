@@ -53,12 +53,10 @@ void draw(const gpu::Pipeline& pipeline, VkCommandBuffer commands, VkDescriptorS
 
 Result<SkyPass> SkyPass::create(gpu::Context& context, const PassSetup& setup) {
     SkyPass pass;
-    Result<gpu::Pipeline> sky = gpu::Pipeline::create(context, sky_desc(setup));
-    if (!sky) return failure(std::move(sky));
-    Result<gpu::Pipeline> grid = gpu::Pipeline::create(context, grid_desc(setup));
-    if (!grid) return failure(std::move(grid));
-    pass.sky_ = std::move(*sky);
-    pass.grid_ = std::move(*grid);
+    DARKROOM_TRY_VALUE(gpu::Pipeline sky, gpu::Pipeline::create(context, sky_desc(setup)));
+    DARKROOM_TRY_VALUE(gpu::Pipeline grid, gpu::Pipeline::create(context, grid_desc(setup)));
+    pass.sky_ = std::move(sky);
+    pass.grid_ = std::move(grid);
     return pass;
 }
 

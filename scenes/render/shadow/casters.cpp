@@ -68,9 +68,8 @@ Result<> Casters::require(const scene::Snapshot& snapshot, const DrawList& list,
         for (const Batch& batch : *batches) {
             const Variant variant = variant_of(snapshot, list, batch, near_casters);
             if (pipelines_.contains(variant)) continue;
-            Result<gpu::Pipeline> made = create_pipeline(variant);
-            if (!made) return failure(std::move(made));
-            pipelines_.emplace(variant, std::move(*made));
+            DARKROOM_TRY_VALUE(gpu::Pipeline made, create_pipeline(variant));
+            pipelines_.emplace(variant, std::move(made));
         }
     }
     return {};
@@ -85,9 +84,9 @@ Result<> Casters::record_batch(const Recording& recording, const DrawList& list,
     const VkCommandBuffer commands = recording.commands;
     std::array sets{recording.frame_set, recording.frame_set};
     if (variant.is_masked) {
-        Result<VkDescriptorSet> textures = recording.scene->textures(recording.snapshot->materials[batch.material]);
-        if (!textures) return failure(std::move(textures));
-        sets[1] = *textures;
+        DARKROOM_TRY_VALUE(VkDescriptorSet textures,
+                           recording.scene->textures(recording.snapshot->materials[batch.material]));
+        sets[1] = textures;
     }
     context_->vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle);
     context_->vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0,
@@ -101,8 +100,7 @@ Result<> Casters::record_batch(const Recording& recording, const DrawList& list,
 Result<> Casters::record(const Recording& recording, const DrawList& list, std::uint32_t first_instance) const {
     for (const std::vector<Batch>* batches : {&list.opaque, &list.transparent}) {
         for (const Batch& batch : *batches) {
-            Result<> recorded = record_batch(recording, list, batch, first_instance);
-            if (!recorded) return recorded;
+            DARKROOM_TRY(record_batch(recording, list, batch, first_instance));
         }
     }
     return {};

@@ -22,8 +22,7 @@ Result<> view_as_array(gpu::Context& context, gpu::Image& image) {
     // No exception comes between the view and its owner.
     const std::string what = fmt::format("creating a view of the image \"{}\"", image.info.name);
     VkImageView view = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view), what);
-    if (!made) return made;
+    DARKROOM_TRY(context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view), what));
     context.vk.DestroyImageView(context.device, image.view, context.allocator);
     image.view = view;
     return {};
@@ -31,13 +30,12 @@ Result<> view_as_array(gpu::Context& context, gpu::Image& image) {
 
 Result<gpu::Image> create_map(gpu::Context& context, std::string name, VkExtent2D extent, std::uint32_t layers,
                               VkImageUsageFlags usage) {
-    Result<gpu::Image> image = gpu::Image::create(context, {.name = std::move(name),
-                                                            .format = shadow_map_format,
-                                                            .extent = {extent.width, extent.height, 1},
-                                                            .array_layers = layers,
-                                                            .usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT});
-    if (!image) return image;
-    if (Result<> viewed = view_as_array(context, *image); !viewed) return failure(std::move(viewed));
+    DARKROOM_TRY_VALUE(gpu::Image image, gpu::Image::create(context, {.name = std::move(name),
+                                                                      .format = shadow_map_format,
+                                                                      .extent = {extent.width, extent.height, 1},
+                                                                      .array_layers = layers,
+                                                                      .usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT}));
+    DARKROOM_TRY(view_as_array(context, image));
     return image;
 }
 
@@ -70,15 +68,14 @@ Result<gpu::Image> create_shadow_map(gpu::Context& context, std::string name, Vk
 }
 
 Result<gpu::Image> create_lit_map(gpu::Context& context) {
-    Result<gpu::Image> image = create_map(context, "no shadow", {1, 1}, 1, VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-    if (!image) return image;
+    DARKROOM_TRY_VALUE(gpu::Image image, create_map(context, "no shadow", {1, 1}, 1, VK_IMAGE_USAGE_TRANSFER_DST_BIT));
     Result<> cleared = gpu::submit_and_wait(context, "clearing the empty shadow map", [&](VkCommandBuffer commands) {
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         const VkClearDepthStencilValue lit{.depth = 1};
         const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-        context.vk.CmdClearDepthStencilImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &lit, 1,
+        context.vk.CmdClearDepthStencilImage(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &lit, 1,
                                              &range);
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     });
     if (!cleared) return failure(std::move(cleared));
@@ -95,9 +92,8 @@ Result<VkSampler> create_shadow_sampler(gpu::Context& context) {
                                    .maxLod = VK_LOD_CLAMP_NONE,
                                    .borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
-                                  "creating the sampler of shadow maps");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
+                               "creating the sampler of shadow maps"));
     return sampler;
 }
 

@@ -212,12 +212,8 @@ Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayo
     state.casters = Casters(context, frame_layout, scene.material_layout.handle);
     state.desc = desc;
     state.most = max_needs;
-    Result<gpu::Image> lit_map = create_lit_map(context);
-    if (!lit_map) return failure(std::move(lit_map));
-    state.lit_map = std::move(*lit_map);
-    Result<VkSampler> sampler = create_shadow_sampler(context);
-    if (!sampler) return failure(std::move(sampler));
-    state.sampler = *sampler;
+    DARKROOM_TRY_VALUE(state.lit_map, create_lit_map(context));
+    DARKROOM_TRY_VALUE(state.sampler, create_shadow_sampler(context));
     return pass;
 }
 

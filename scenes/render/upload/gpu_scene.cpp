@@ -149,15 +149,13 @@ Result<GpuScene::State::Slot> GpuScene::State::slot(const scene::Texture& textur
     // Constant textures need no sampler of their own: it would only make more sets.
     const bool is_constant = found <= GpuTextures::flat_normal;
     const scene::Texture use = is_constant ? scene::Texture{} : texture;
-    Result<VkSampler> sampler = textures.sampler(use.wrap_u, use.wrap_v, use.is_nearest);
-    if (!sampler) return failure(std::move(sampler));
-    return Slot{found, *sampler};
+    DARKROOM_TRY_VALUE(VkSampler sampler, textures.sampler(use.wrap_u, use.wrap_v, use.is_nearest));
+    return Slot{found, sampler};
 }
 
 Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkDescriptorSetLayout layout) {
     if (const auto found = made_sets.find(slots); found != made_sets.end()) return found->second;
-    Result<VkDescriptorSet> made = sets.allocate(layout);
-    if (!made) return made;
+    DARKROOM_TRY_VALUE(VkDescriptorSet made, sets.allocate(layout));
     std::array<VkDescriptorImageInfo, scene::material_textures> images{};
     std::array<VkWriteDescriptorSet, scene::material_textures> writes{};
     for (std::uint32_t i = 0; i < slots.size(); ++i) {
@@ -165,7 +163,7 @@ Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkD
                      .imageView = textures.view(slots[i].texture),
                      .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                     .dstSet = *made,
+                     .dstSet = made,
                      .dstBinding = i,
                      .descriptorCount = 1,
                      .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
@@ -173,7 +171,7 @@ Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkD
     }
     context.vk.UpdateDescriptorSets(context.device, static_cast<std::uint32_t>(slots.size()), writes.data(), 0,
                                     nullptr);
-    made_sets.emplace(slots, *made);
+    made_sets.emplace(slots, made);
     return made;
 }
 
@@ -182,12 +180,8 @@ Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& as
     out.state_ = std::make_shared<State>(context);
     std::array<gpu::SetLayout::Binding, scene::material_textures> bindings{};
     for (gpu::SetLayout::Binding& binding : bindings) binding.stages = VK_SHADER_STAGE_FRAGMENT_BIT;
-    Result<gpu::SetLayout> material_layout = gpu::SetLayout::create(context, bindings);
-    if (!material_layout) return failure(std::move(material_layout));
-    out.material_layout = std::move(*material_layout);
-    Result<gpu::SetLayout> billboard_layout = gpu::SetLayout::create(context, {bindings.data(), 1});
-    if (!billboard_layout) return failure(std::move(billboard_layout));
-    out.billboard_layout = std::move(*billboard_layout);
+    DARKROOM_TRY_VALUE(out.material_layout, gpu::SetLayout::create(context, bindings));
+    DARKROOM_TRY_VALUE(out.billboard_layout, gpu::SetLayout::create(context, {bindings.data(), 1}));
 
     const Geometry geometry = out.state_->gather(assets);
     Uploader uploader(context);
@@ -206,15 +200,12 @@ Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& as
         Part{out.morph_deltas, bytes_of(geometry.morph_deltas), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, sizeof(vec4),
              "morph targets"}};
     const VkDeviceSize deltas = geometry.morph_deltas.size() * sizeof(vec4);
-    if (Result<> checked = check_storage(context, deltas, "morph targets"); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(check_storage(context, deltas, "morph targets"));
     for (const Part& part : parts) {
-        Result<gpu::Buffer> made = uploader.buffer(part.bytes, part.usage, part.least_size, part.name);
-        if (!made) return failure(std::move(made));
-        part.buffer = std::move(*made);
+        DARKROOM_TRY_VALUE(part.buffer, uploader.buffer(part.bytes, part.usage, part.least_size, part.name));
     }
-    if (Result<> made = out.state_->textures.create(assets, uploader); !made) return failure(std::move(made));
-    if (Result<> done = uploader.flush(); !done) return failure(std::move(done));
+    DARKROOM_TRY(out.state_->textures.create(assets, uploader));
+    DARKROOM_TRY(uploader.flush());
     return out;
 }
 
@@ -254,19 +245,17 @@ Result<VkDescriptorSet> GpuScene::textures(const scene::SnapshotMaterial& materi
         TextureKey key{material.model, texture->image, is_srgb ? Transfer::Srgb : Transfer::Linear};
         if (slots.empty() && material.entity_texture != no_index)
             key = {no_index, material.entity_texture, Transfer::Srgb};
-        Result<State::Slot> slot =
-            state_->slot(*texture, key, is_normal ? GpuTextures::flat_normal : GpuTextures::white);
-        if (!slot) return failure(std::move(slot));
-        slots.push_back(*slot);
+        DARKROOM_TRY_VALUE(State::Slot slot,
+                           state_->slot(*texture, key, is_normal ? GpuTextures::flat_normal : GpuTextures::white));
+        slots.push_back(slot);
     }
     return state_->set(slots, material_layout.handle);
 }
 
 Result<VkDescriptorSet> GpuScene::texture(std::uint32_t image) {
     const scene::Texture clamped{.wrap_u = scene::Wrap::Clamp, .wrap_v = scene::Wrap::Clamp};
-    Result<State::Slot> slot = state_->slot(clamped, {no_index, image, Transfer::Srgb}, GpuTextures::white);
-    if (!slot) return failure(std::move(slot));
-    return state_->set({*slot}, billboard_layout.handle);
+    DARKROOM_TRY_VALUE(State::Slot slot, state_->slot(clamped, {no_index, image, Transfer::Srgb}, GpuTextures::white));
+    return state_->set({slot}, billboard_layout.handle);
 }
 
 }  // namespace darkroom::render

@@ -22,26 +22,22 @@ Result<> SetAllocator::add_pool() {
     // No exception comes between the pool and its place.
     pools_.reserve(pools_.size() + 1);
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    Result<> made =
-        context_->check(context_->vk.CreateDescriptorPool(context_->device, &info, context_->allocator, &pool),
-                        "creating a pool of the scene's descriptor sets");
-    if (!made) return made;
+    DARKROOM_TRY(context_->check(context_->vk.CreateDescriptorPool(context_->device, &info, context_->allocator, &pool),
+                                 "creating a pool of the scene's descriptor sets"));
     pools_.push_back(pool);
     left_ = sets_a_pool_;
     return {};
 }
 
 Result<VkDescriptorSet> SetAllocator::allocate(VkDescriptorSetLayout layout) {
-    if (left_ == 0)
-        if (Result<> added = add_pool(); !added) return failure(std::move(added));
+    if (left_ == 0) DARKROOM_TRY(add_pool());
     const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                            .descriptorPool = pools_.back(),
                                            .descriptorSetCount = 1,
                                            .pSetLayouts = &layout};
     VkDescriptorSet set = VK_NULL_HANDLE;
-    Result<> made = context_->check(context_->vk.AllocateDescriptorSets(context_->device, &info, &set),
-                                    "allocating a descriptor set of the scene");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context_->check(context_->vk.AllocateDescriptorSets(context_->device, &info, &set),
+                                 "allocating a descriptor set of the scene"));
     --left_;
     return set;
 }

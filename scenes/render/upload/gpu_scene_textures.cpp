@@ -103,8 +103,8 @@ GpuTextures::~GpuTextures() {
 }
 
 Result<> GpuTextures::create(const scene::Assets& assets, Uploader& uploader) {
-    if (Result<> done = create_constant({255, 255, 255, 255}, uploader, "white"); !done) return done;
-    if (Result<> done = create_constant({128, 128, 255, 255}, uploader, "flat normal"); !done) return done;
+    DARKROOM_TRY(create_constant({255, 255, 255, 255}, uploader, "white"));
+    DARKROOM_TRY(create_constant({128, 128, 255, 255}, uploader, "flat normal"));
     std::vector<TextureKey> keys;
     for (const TextureKey& key : used_textures(assets))
         if (image_of(assets, key) != nullptr) keys.push_back(key);
@@ -112,7 +112,7 @@ Result<> GpuTextures::create(const scene::Assets& assets, Uploader& uploader) {
     const std::size_t group = 2 * std::max(1U, std::thread::hardware_concurrency());
     for (std::size_t first = 0; first < keys.size(); first += group) {
         const std::span<const TextureKey> some(keys.data() + first, std::min(group, keys.size() - first));
-        if (Result<> done = create_textures(assets, some, uploader); !done) return done;
+        DARKROOM_TRY(create_textures(assets, some, uploader));
     }
     return {};
 }
@@ -145,8 +145,7 @@ Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<con
         for (const WideMipLevel& level : chains[i].wide)
             add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
         numbers_.emplace(keys[i], images_.size());
-        if (Result<> done = uploader.image(images_.emplace_back(), chains[i].format, levels, image.name); !done)
-            return done;
+        DARKROOM_TRY(uploader.image(images_.emplace_back(), chains[i].format, levels, image.name));
     }
     return {};
 }
@@ -173,9 +172,8 @@ Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, b
         .maxAnisotropy = is_anisotropic ? max_anisotropy : 1,
         .maxLod = VK_LOD_CLAMP_NONE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context_->check(context_->vk.CreateSampler(context_->device, &info, context_->allocator, &sampler),
-                                    "creating a sampler of the scene");
-    if (!made) return failure(std::move(made));
+    DARKROOM_TRY(context_->check(context_->vk.CreateSampler(context_->device, &info, context_->allocator, &sampler),
+                                 "creating a sampler of the scene"));
     samplers_.emplace(key, sampler);
     return sampler;
 }

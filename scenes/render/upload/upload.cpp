@@ -14,47 +14,40 @@ constexpr std::size_t max_staged_bytes = std::size_t{256} << 20U;
 }  // namespace
 
 Result<VkBuffer> Uploader::stage(std::size_t size, std::byte*& mapped) {
-    if (staged_bytes_ > 0 && staged_bytes_ + size > max_staged_bytes)
-        if (Result<> flushed = flush(); !flushed) return failure(std::move(flushed));
-    Result<gpu::Buffer> staging = gpu::Buffer::create(*context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                      gpu::Memory::Kind::Upload, "staging of scene assets");
-    if (!staging) return failure(std::move(staging));
-    mapped = staging->memory.mapped;
+    if (staged_bytes_ > 0 && staged_bytes_ + size > max_staged_bytes) DARKROOM_TRY(flush());
+    DARKROOM_TRY_VALUE(gpu::Buffer staging, gpu::Buffer::create(*context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                                gpu::Memory::Kind::Upload, "staging of scene assets"));
+    mapped = staging.memory.mapped;
     staged_bytes_ += size;
-    staging_.push_back(std::move(*staging));
+    staging_.push_back(std::move(staging));
     return staging_.back().handle;
 }
 
 Result<gpu::Buffer> Uploader::buffer(std::span<const std::byte> bytes, VkBufferUsageFlags usage, std::size_t least_size,
                                      std::string_view name) {
     const std::size_t size = std::max(bytes.size(), least_size);
-    Result<gpu::Buffer> made =
-        gpu::Buffer::create(*context_, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::Kind::Device, name);
-    if (!made) return made;
+    DARKROOM_TRY_VALUE(gpu::Buffer made, gpu::Buffer::create(*context_, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                             gpu::Memory::Kind::Device, name));
     std::byte* mapped = nullptr;
-    const Result<VkBuffer> source = stage(size, mapped);
-    if (!source) return failure(source.error());
+    DARKROOM_TRY_VALUE(const VkBuffer source, stage(size, mapped));
     std::ranges::copy(bytes, mapped);
     std::fill(mapped + bytes.size(), mapped + size, std::byte{0});
-    buffer_copies_.push_back({*source, made->handle, size});
+    buffer_copies_.push_back({source, made.handle, size});
     return made;
 }
 
 Result<> Uploader::image(gpu::Image& out, VkFormat format, std::span<const Level> levels, std::string_view name) {
-    Result<gpu::Image> made =
-        gpu::Image::create(*context_, {.name = std::string(name),
-                                       .format = format,
-                                       .extent = {levels[0].width, levels[0].height, 1},
-                                       .mip_levels = static_cast<std::uint32_t>(levels.size()),
-                                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!made) return failure(std::move(made));
-    out = std::move(*made);
+    DARKROOM_TRY_VALUE(
+        out, gpu::Image::create(*context_, {.name = std::string(name),
+                                            .format = format,
+                                            .extent = {levels[0].width, levels[0].height, 1},
+                                            .mip_levels = static_cast<std::uint32_t>(levels.size()),
+                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     std::size_t size = 0;
     for (const Level& level : levels) size += level.bytes.size();
     std::byte* mapped = nullptr;
-    const Result<VkBuffer> source = stage(size, mapped);
-    if (!source) return failure(source.error());
-    ImageCopy copy{.source = *source, .target = &out, .regions = {}};
+    DARKROOM_TRY_VALUE(const VkBuffer source, stage(size, mapped));
+    ImageCopy copy{.source = source, .target = &out, .regions = {}};
     std::size_t offset = 0;
     for (const Level& level : levels) {
         std::memcpy(mapped + offset, level.bytes.data(), level.bytes.size());

@@ -138,8 +138,7 @@ Result<Layout> Document::make_layout(int index) {
             return wrong(fmt::format("ends {} bytes beyond bufferView {}", end - bytes->size(), accessor.bufferView));
         layout.data = bytes->subspan(accessor.byteOffset);
     }
-    if (accessor.sparse.isSparse)
-        if (auto added = add_sparse(accessor, pointer, layout); !added) return failure(std::move(added));
+    if (accessor.sparse.isSparse) DARKROOM_TRY(add_sparse(accessor, pointer, layout));
     return layout;
 }
 
@@ -166,38 +165,34 @@ Result<> Document::add_sparse(const tinygltf::Accessor& accessor, const std::str
                              layout.sparse_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                              layout.sparse_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (!is_unsigned) return wrong("indices/componentType", fmt::format("{} is not allowed", layout.sparse_type));
-    auto indices =
-        take(sparse.indices.bufferView, sparse.indices.byteOffset, layout.sparse_count * index_size, "indices");
-    if (!indices) return failure(std::move(indices));
+    DARKROOM_TRY_VALUE(auto indices, take(sparse.indices.bufferView, sparse.indices.byteOffset,
+                                          layout.sparse_count * index_size, "indices"));
     const std::size_t element = size_of_element(accessor.type, size_of_component(accessor.componentType));
-    auto values = take(sparse.values.bufferView, sparse.values.byteOffset, layout.sparse_count * element, "values");
-    if (!values) return failure(std::move(values));
+    DARKROOM_TRY_VALUE(
+        auto values, take(sparse.values.bufferView, sparse.values.byteOffset, layout.sparse_count * element, "values"));
     std::size_t next = 0;
     for (std::size_t i = 0; i < layout.sparse_count; ++i) {
-        const std::uint32_t index = read_unsigned(indices->data() + i * index_size, layout.sparse_type);
+        const std::uint32_t index = read_unsigned(indices.data() + i * index_size, layout.sparse_type);
         if (index < next || index >= layout.count)
             return wrong("indices",
                          fmt::format("number {} is {}, allowed is [{}, {}]", i, index, next, layout.count - 1));
         next = std::size_t{index} + 1;
     }
-    layout.sparse_indices = *indices;
-    layout.sparse_values = *values;
+    layout.sparse_indices = indices;
+    layout.sparse_values = values;
     return {};
 }
 
 Result<const Layout*> Document::layout(int accessor) {
-    if (auto checked = faults_.check(fmt::format("/accessors/{}", accessor)); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(faults_.check(fmt::format("/accessors/{}", accessor)));
     return &*layouts_[static_cast<std::size_t>(accessor)];
 }
 
 Result<Numbers> Document::numbers(int accessor) {
-    auto found = layout(accessor);
-    if (!found) return failure(std::move(found));
-    const Layout& layout = **found;
+    DARKROOM_TRY_VALUE(auto found, layout(accessor));
+    const Layout& layout = *found;
     const std::size_t size = layout.count * layout.components;
-    if (auto taken = budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(float)); !taken)
-        return failure(std::move(taken));
+    DARKROOM_TRY(budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(float)));
     Numbers out{.values = std::vector<float>(size), .components = layout.components, .count = layout.count};
     if (!layout.data.empty())
         for (std::size_t i = 0; i < layout.count; ++i)
@@ -247,18 +242,15 @@ void Document::check_extent(int index) {
 }
 
 Result<std::vector<std::uint32_t>> Document::integers(int accessor) {
-    auto found = layout(accessor);
-    if (!found) return failure(std::move(found));
-    const Layout& layout = **found;
+    DARKROOM_TRY_VALUE(auto found, layout(accessor));
+    const Layout& layout = *found;
     const bool is_unsigned = layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                              layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                              layout.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     if (!is_unsigned || layout.is_normalized)
         return user_error(fmt::format("/accessors/{}: unsigned integers are needed here", accessor));
     const std::size_t size = layout.count * layout.components;
-    if (auto taken = budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(std::uint32_t));
-        !taken)
-        return failure(std::move(taken));
+    DARKROOM_TRY(budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(std::uint32_t)));
     std::vector<std::uint32_t> out(size);
     const std::size_t component = size_of_component(layout.component_type);
     const auto take = [&](const std::byte* from, std::size_t element) {

@@ -31,13 +31,11 @@ bool all_finite(const std::vector<float>& values) {
 }
 
 Result<> read_times(Document& document, int accessor, const std::string& pointer, std::vector<float>& times) {
-    auto layout = document.layout(accessor);
-    if (!layout) return failure(std::move(layout));
-    if ((*layout)->components != 1 || (*layout)->component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
+    DARKROOM_TRY_VALUE(auto layout, document.layout(accessor));
+    if (layout->components != 1 || layout->component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
         return user_error(fmt::format("{}/input: accessor {} is not a SCALAR of floats", pointer, accessor));
-    auto numbers = document.numbers(accessor);
-    if (!numbers) return failure(std::move(numbers));
-    times = std::move(numbers->values);
+    DARKROOM_TRY_VALUE(auto numbers, document.numbers(accessor));
+    times = std::move(numbers.values);
     if (!all_finite(times) || times.front() < 0)
         return user_error(fmt::format("{}/input: a time of accessor {} is negative or not finite", pointer, accessor));
     for (std::size_t i = 1; i < times.size(); ++i)
@@ -72,11 +70,10 @@ void normalize_rotations(AnimationChannel& channel, Document& document, const st
 }
 
 Result<> read_values(Document& document, int accessor, const std::string& pointer, AnimationChannel& channel) {
-    auto layout = document.layout(accessor);
-    if (!layout) return failure(std::move(layout));
+    DARKROOM_TRY_VALUE(auto layout, document.layout(accessor));
     const bool is_weights = channel.property == AnimatedProperty::Weights;
     const std::uint32_t components = is_weights ? 1 : channel.width;
-    const Layout& shape = **layout;
+    const Layout& shape = *layout;
     if (shape.components != components)
         return user_error(fmt::format("{}/output: accessor {} has {} components, {} are needed", pointer, accessor,
                                       shape.components, components));
@@ -88,9 +85,8 @@ Result<> read_values(Document& document, int accessor, const std::string& pointe
     if (shape.count != needed)
         return user_error(fmt::format("{}/output: accessor {} has {} elements, {} are needed for {} times", pointer,
                                       accessor, shape.count, needed, channel.times.size()));
-    auto numbers = document.numbers(accessor);
-    if (!numbers) return failure(std::move(numbers));
-    channel.values = std::move(numbers->values);
+    DARKROOM_TRY_VALUE(auto numbers, document.numbers(accessor));
+    channel.values = std::move(numbers.values);
     if (!all_finite(channel.values))
         return user_error(fmt::format("{}/output: accessor {} has a value that is not finite", pointer, accessor));
     if (channel.property == AnimatedProperty::Rotation) normalize_rotations(channel, document, pointer);
@@ -132,10 +128,10 @@ Result<std::optional<AnimationChannel>> convert_channel(Document& document, cons
         return user_error(
             fmt::format("{}/interpolation: {}, allowed is STEP, LINEAR and CUBICSPLINE", place, sampler.interpolation));
     channel.interpolation = *interpolation;
-    if (auto read = read_times(document, sampler.input, place, channel.times); !read) return failure(std::move(read));
+    DARKROOM_TRY(read_times(document, sampler.input, place, channel.times));
     if (*interpolation == Interpolation::CubicSpline && channel.times.size() < 2)
         document.faults().warn(fmt::format("{}/input: one time, a spline needs two", place));
-    if (auto read = read_values(document, sampler.output, place, channel); !read) return failure(std::move(read));
+    DARKROOM_TRY(read_values(document, sampler.output, place, channel));
     if (node == no_index) return std::nullopt;
     if (model.nodes[node].matrix && *property != AnimatedProperty::Weights) {
         document.faults().warn(fmt::format("{}: node {} has a matrix and is not animated", target, source.target_node));
@@ -148,7 +144,7 @@ Result<std::optional<AnimationChannel>> convert_channel(Document& document, cons
 
 Result<Animation> convert_animation(Document& document, std::size_t index, const NodeOrder& order, const Model& model) {
     const std::string pointer = fmt::format("/animations/{}", index);
-    if (auto checked = document.faults().check(pointer); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(document.faults().check(pointer));
     const tinygltf::Animation& source = document.model().animations[index];
     Animation animation{.name = source.name};
     std::set<std::pair<int, std::string>> targets;
@@ -158,11 +154,10 @@ Result<Animation> convert_animation(Document& document, std::size_t index, const
                                                &from - source.channels.data(), from.target_node, from.target_path));
             continue;
         }
-        auto channel = convert_channel(document, source, from, pointer, order, model);
-        if (!channel) return failure(std::move(channel));
-        if (!*channel) continue;
-        animation.duration = std::max(animation.duration, (*channel)->times.back());
-        animation.channels.push_back(std::move(**channel));
+        DARKROOM_TRY_VALUE(auto channel, convert_channel(document, source, from, pointer, order, model));
+        if (!channel) continue;
+        animation.duration = std::max(animation.duration, channel->times.back());
+        animation.channels.push_back(std::move(*channel));
     }
     return animation;
 }

@@ -65,8 +65,7 @@ Result<nlohmann::json> parse_json(std::span<const std::byte> bytes, Budget& budg
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const JsonShape shape = shape_of(text);
     if (shape.is_too_deep) return user_error(fmt::format("JSON nested deeper than {} levels", max_nesting));
-    if (auto taken = budget.take("the JSON", "values", shape.values, bytes_per_value); !taken)
-        return failure(std::move(taken));
+    DARKROOM_TRY(budget.take("the JSON", "values", shape.values, bytes_per_value));
     try {
         auto json = nlohmann::json::parse(text);
         if (!json.is_object()) return user_error("the JSON is not an object");
@@ -123,9 +122,7 @@ Result<Container> split_binary(std::span<const std::byte> file, Budget& budget) 
             container.has_binary = true;
         }
     }
-    auto parsed = parse_json(*json, budget);
-    if (!parsed) return failure(std::move(parsed));
-    container.json = std::move(*parsed);
+    DARKROOM_TRY_VALUE(container.json, parse_json(*json, budget));
     return container;
 }
 
@@ -163,10 +160,9 @@ Result<Container> split_container(std::span<const std::byte> file, Budget& budge
     if (file.empty()) return user_error("is empty");
     const std::string_view start(reinterpret_cast<const char*>(file.data()), std::min<std::size_t>(file.size(), 4));
     if (start == "glTF") return split_binary(file, budget);
-    auto json = parse_json(file, budget);
-    if (!json) return failure(std::move(json));
+    DARKROOM_TRY_VALUE(auto json, parse_json(file, budget));
     Container container;
-    container.json = std::move(*json);
+    container.json = std::move(json);
     if (start.starts_with("\xef\xbb\xbf")) container.warnings.emplace_back("starts with a byte order mark");
     return container;
 }

@@ -41,40 +41,33 @@ Result<Document> Document::open(const std::filesystem::path& path, Budget budget
     document.budget_ = std::move(budget);
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return user_error("not found");
-    auto file = read_bounded(path, max_file_bytes, true);
-    if (!file) return failure(std::move(file));
-    document.file_ = std::move(*file);
+    DARKROOM_TRY_VALUE(document.file_, read_bounded(path, max_file_bytes, true));
     document.budget_.add_file(document.file_.size());
     try {
-        auto container = split_container(document.file_, document.budget_);
-        if (!container) return failure(std::move(container));
-        for (std::string& warning : container->warnings) document.faults_.warn(std::move(warning));
-        json& root = container->json;
-        if (auto checked = check_structure(root, document.faults_, document.budget_); !checked)
-            return failure(std::move(checked));
+        DARKROOM_TRY_VALUE(auto container, split_container(document.file_, document.budget_));
+        for (std::string& warning : container.warnings) document.faults_.warn(std::move(warning));
+        json& root = container.json;
+        DARKROOM_TRY(check_structure(root, document.faults_, document.budget_));
         const std::filesystem::path folder = path.parent_path();
-        auto loaded = document.load_buffers(root, container->binary, container->has_binary, folder);
-        if (!loaded) return failure(std::move(loaded));
+        DARKROOM_TRY(document.load_buffers(root, container.binary, container.has_binary, folder));
         const json images = root.contains("images") ? std::move(root["images"]) : json::array();
         root.erase("images");
         if (root.contains("textures")) choose_webp(root["textures"]);
         if (root.contains("bufferViews")) document.unpack_views(root["bufferViews"]);
-        if (auto parsed = document.parse(root); !parsed) return failure(std::move(parsed));
+        DARKROOM_TRY(document.parse(root));
         document.unpack_meshes();
         document.load_images(images, folder);
     } catch (const std::exception& exception) {
         return user_error(fmt::format("cannot be read: {}", exception.what()));
     }
-    if (auto checked = document.budget_.check(); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(document.budget_.check());
     return document;
 }
 
 Result<std::span<const std::byte>> Document::file_of_buffer(const std::filesystem::path& path, std::size_t most) {
     const auto [found, is_new] = buffer_files_.try_emplace(path);
     if (!is_new) return std::span<const std::byte>(found->second);
-    auto bytes = read_bounded(path, most, false);
-    if (!bytes) return failure(std::move(bytes));
-    found->second = std::move(*bytes);
+    DARKROOM_TRY_VALUE(found->second, read_bounded(path, most, false));
     budget_.add_file(found->second.size());
     return std::span<const std::byte>(found->second);
 }
@@ -255,8 +248,7 @@ bool Document::uses_extension(std::string_view name) const {
 }
 
 Result<std::span<const std::byte>> Document::view(int index) {
-    if (auto checked = faults_.check(fmt::format("/bufferViews/{}", index)); !checked)
-        return failure(std::move(checked));
+    DARKROOM_TRY(faults_.check(fmt::format("/bufferViews/{}", index)));
     if (const auto found = unpacked_views_.find(static_cast<std::size_t>(index)); found != unpacked_views_.end())
         return found->second;
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];

@@ -30,9 +30,8 @@ Result<> read_attribute(Document& document, int accessor, const InstanceAttribut
     const auto wrong = [&](const std::string& what) {
         return user_error(fmt::format("{}/{}: accessor {} {}", place, attribute.name, accessor, what));
     };
-    auto layout = document.layout(accessor);
-    if (!layout) return failure(std::move(layout));
-    const Layout& shape = **layout;
+    DARKROOM_TRY_VALUE(auto layout, document.layout(accessor));
+    const Layout& shape = *layout;
     if (shape.components != attribute.components)
         return wrong(fmt::format("has {} components, {} are needed", shape.components, attribute.components));
     const bool may_be_integers = attribute.components == 4 && shape.is_normalized;
@@ -41,11 +40,10 @@ Result<> read_attribute(Document& document, int accessor, const InstanceAttribut
     if (count && *count != shape.count)
         return wrong(fmt::format("has {} elements, the others have {}", shape.count, *count));
     count = shape.count;
-    auto numbers = document.numbers(accessor);
-    if (!numbers) return failure(std::move(numbers));
-    if (!std::ranges::all_of(numbers->values, [](float value) { return std::isfinite(value); }))
+    DARKROOM_TRY_VALUE(auto numbers, document.numbers(accessor));
+    if (!std::ranges::all_of(numbers.values, [](float value) { return std::isfinite(value); }))
         return wrong("has a value that is not finite");
-    out = std::move(*numbers);
+    out = std::move(numbers);
     return {};
 }
 
@@ -98,15 +96,14 @@ Result<> add_instances_of(Document& document, std::uint32_t file_index, std::uin
         const InstanceAttribute& attribute = instance_attributes[i];
         if (!attributes.Has(attribute.name)) continue;
         const int accessor = attributes.Get(attribute.name).GetNumberAsInt();
-        if (auto read = read_attribute(document, accessor, attribute, place, count, numbers[i]); !read) return read;
+        DARKROOM_TRY(read_attribute(document, accessor, attribute, place, count, numbers[i]));
     }
     if (!count) {
         document.faults().warn(fmt::format("{}: none of TRANSLATION, ROTATION and SCALE; it is drawn once", place));
         return {};
     }
     const std::uint64_t weights = model.nodes[node].weights.size() * sizeof(float);
-    if (auto charged = document.budget().take(place, "instances", *count, element_size + weights); !charged)
-        return charged;
+    DARKROOM_TRY(document.budget().take(place, "instances", *count, element_size + weights));
     Node instance{.name = model.nodes[node].name, .parent = node};
     std::swap(instance.mesh, model.nodes[node].mesh);
     std::swap(instance.weights, model.nodes[node].weights);
@@ -126,8 +123,7 @@ Result<> add_instances_of(Document& document, std::uint32_t file_index, std::uin
 Result<> add_instances(Document& document, const NodeOrder& order, Model& model) {
     const std::vector<bool> moves = nodes_with_moving_weights(model);
     for (std::uint32_t node = 0; node < order.file_index.size(); ++node)
-        if (auto added = add_instances_of(document, order.file_index[node], node, moves[node], model); !added)
-            return added;
+        DARKROOM_TRY(add_instances_of(document, order.file_index[node], node, moves[node], model));
     return {};
 }
 

@@ -47,8 +47,7 @@ class MaterialReader {
         Texture texture;
         if (info.index < 0) return texture;
         Faults& faults = document_.faults();
-        if (auto checked = faults.check(fmt::format("/textures/{}", info.index)); !checked)
-            return failure(std::move(checked));
+        DARKROOM_TRY(faults.check(fmt::format("/textures/{}", info.index)));
         const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(info.index)];
         if (source.source < 0) {
             faults.warn(fmt::format("/textures/{}: has no image that is read here", info.index));
@@ -58,8 +57,7 @@ class MaterialReader {
         if (is_broken_[image]) return texture;
         texture.image = static_cast<std::uint32_t>(image);
         if (source.sampler >= 0) {
-            if (auto checked = faults.check(fmt::format("/samplers/{}", source.sampler)); !checked)
-                return failure(std::move(checked));
+            DARKROOM_TRY(faults.check(fmt::format("/samplers/{}", source.sampler)));
             const tinygltf::Sampler& sampler = document_.model().samplers[static_cast<std::size_t>(source.sampler)];
             texture.wrap_u = wrap_of(sampler.wrapS);
             texture.wrap_v = wrap_of(sampler.wrapT);
@@ -91,9 +89,7 @@ class MaterialReader {
             const tinygltf::Value& extensions = object.Get("extensions");
             for (const std::string& key : extensions.Keys()) info.extensions[key] = extensions.Get(key);
         }
-        Result<Texture> made = read(info, place.c_str());
-        if (!made) return failure(std::move(made));
-        texture = *made;
+        DARKROOM_TRY_VALUE(texture, read(info, place.c_str()));
         return {};
     }
 
@@ -125,7 +121,7 @@ Result<> read_specular(const MaterialReader& reader, const tinygltf::Value& exte
     for (int c = 0; c < 3; ++c)
         layer.color[c] = as_float(std::max(element_of(extension, "specularColorFactor", c, 1), 0.0));
     const std::string place = "extensions/KHR_materials_specular/";
-    if (Result<> done = reader.read_into(layer.texture, extension, place + "specularTexture"); !done) return done;
+    DARKROOM_TRY(reader.read_into(layer.texture, extension, place + "specularTexture"));
     return reader.read_into(layer.color_texture, extension, place + "specularColorTexture");
 }
 
@@ -135,10 +131,8 @@ Result<> read_clearcoat(const MaterialReader& reader, const tinygltf::Value& ext
     const std::string place = "extensions/KHR_materials_clearcoat/";
     if (extension.Has("clearcoatNormalTexture"))
         layer.normal_scale = as_float(number_of(extension.Get("clearcoatNormalTexture"), "scale", 1));
-    if (Result<> done = reader.read_into(layer.texture, extension, place + "clearcoatTexture"); !done) return done;
-    if (Result<> done = reader.read_into(layer.roughness_texture, extension, place + "clearcoatRoughnessTexture");
-        !done)
-        return done;
+    DARKROOM_TRY(reader.read_into(layer.texture, extension, place + "clearcoatTexture"));
+    DARKROOM_TRY(reader.read_into(layer.roughness_texture, extension, place + "clearcoatRoughnessTexture"));
     return reader.read_into(layer.normal_texture, extension, place + "clearcoatNormalTexture");
 }
 
@@ -147,8 +141,7 @@ Result<> read_sheen(const MaterialReader& reader, const tinygltf::Value& extensi
         layer.color[c] = as_float(std::clamp(element_of(extension, "sheenColorFactor", c, 0), 0.0, 1.0));
     layer.roughness = factor_of(extension, "sheenRoughnessFactor", 0);
     const std::string place = "extensions/KHR_materials_sheen/";
-    if (Result<> done = reader.read_into(layer.color_texture, extension, place + "sheenColorTexture"); !done)
-        return done;
+    DARKROOM_TRY(reader.read_into(layer.color_texture, extension, place + "sheenColorTexture"));
     return reader.read_into(layer.roughness_texture, extension, place + "sheenRoughnessTexture");
 }
 
@@ -156,11 +149,11 @@ Result<> read_layers(const MaterialReader& reader, const tinygltf::ExtensionMap&
     if (const auto found = extensions.find("KHR_materials_ior"); found != extensions.end())
         material.specular.index_of_refraction = index_of_refraction(reader, found->second);
     if (const auto found = extensions.find("KHR_materials_specular"); found != extensions.end())
-        if (Result<> done = read_specular(reader, found->second, material.specular); !done) return done;
+        DARKROOM_TRY(read_specular(reader, found->second, material.specular));
     if (const auto found = extensions.find("KHR_materials_clearcoat"); found != extensions.end())
-        if (Result<> done = read_clearcoat(reader, found->second, material.clearcoat); !done) return done;
+        DARKROOM_TRY(read_clearcoat(reader, found->second, material.clearcoat));
     if (const auto found = extensions.find("KHR_materials_sheen"); found != extensions.end())
-        if (Result<> done = read_sheen(reader, found->second, material.sheen); !done) return done;
+        DARKROOM_TRY(read_sheen(reader, found->second, material.sheen));
     return {};
 }
 
@@ -174,7 +167,7 @@ double number_of(const tinygltf::Value& object, const std::string& name, double 
 
 Result<ModelMaterial> convert_material(Document& document, std::size_t index, const std::vector<bool>& is_broken) {
     const std::string pointer = fmt::format("/materials/{}", index);
-    if (auto checked = document.faults().check(pointer); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(document.faults().check(pointer));
     const tinygltf::Material& source = document.model().materials[index];
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     ModelMaterial material{.name = source.name};
@@ -202,25 +195,16 @@ Result<ModelMaterial> convert_material(Document& document, std::size_t index, co
 
     const MaterialReader reader(document, is_broken, pointer);
     const auto read = [&](const auto& info, const char* place, Texture& texture) -> Result<> {
-        auto made = reader.read(info, place);
-        if (!made) return failure(std::move(made));
-        texture = *made;
+        DARKROOM_TRY_VALUE(texture, reader.read(info, place));
         return {};
     };
-    if (auto done = read(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", material.base_color_texture);
-        !done)
-        return failure(std::move(done));
-    if (auto done = read(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture",
-                         material.metallic_roughness_texture);
-        !done)
-        return failure(std::move(done));
-    if (auto done = read(source.normalTexture, "normalTexture", material.normal_texture); !done)
-        return failure(std::move(done));
-    if (auto done = read(source.occlusionTexture, "occlusionTexture", material.occlusion_texture); !done)
-        return failure(std::move(done));
-    if (auto done = read(source.emissiveTexture, "emissiveTexture", material.emissive_texture); !done)
-        return failure(std::move(done));
-    if (Result<> done = read_layers(reader, source.extensions, material); !done) return failure(std::move(done));
+    DARKROOM_TRY(read(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", material.base_color_texture));
+    DARKROOM_TRY(read(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture",
+                      material.metallic_roughness_texture));
+    DARKROOM_TRY(read(source.normalTexture, "normalTexture", material.normal_texture));
+    DARKROOM_TRY(read(source.occlusionTexture, "occlusionTexture", material.occlusion_texture));
+    DARKROOM_TRY(read(source.emissiveTexture, "emissiveTexture", material.emissive_texture));
+    DARKROOM_TRY(read_layers(reader, source.extensions, material));
     return material;
 }
 

@@ -32,9 +32,8 @@ class AttributeReader {
                                         bool has_optional_component = false) {
         const auto found = attributes_.find(name);
         if (found == attributes_.end()) return std::nullopt;
-        auto layout = document_.layout(found->second);
-        if (!layout) return failure(std::move(layout));
-        const Layout& shape = **layout;
+        DARKROOM_TRY_VALUE(auto layout, document_.layout(found->second));
+        const Layout& shape = *layout;
         const auto wrong = [&](const std::string& what) {
             return user_error(fmt::format("{}/{}: accessor {} {}", pointer_, name, found->second, what));
         };
@@ -50,31 +49,27 @@ class AttributeReader {
         }
         if (count_ && shape.count != *count_)
             return wrong(fmt::format("has {} elements, the others have {}", shape.count, *count_));
-        auto numbers = document_.numbers(found->second);
-        if (!numbers) return failure(std::move(numbers));
+        DARKROOM_TRY_VALUE(auto numbers, document_.numbers(found->second));
         count_ = shape.count;
         const auto is_bad = [](float value) { return !std::isfinite(value); };
-        if (std::any_of(numbers->values.begin(), numbers->values.end(), is_bad)) {
+        if (std::any_of(numbers.values.begin(), numbers.values.end(), is_bad)) {
             if (name == "POSITION") return wrong("has a value that is not finite");
             document_.faults().warn(fmt::format("{}/{}: accessor {} has values that are not finite; they are read as 0",
                                                 pointer_, name, found->second));
-            std::replace_if(numbers->values.begin(), numbers->values.end(), is_bad, 0.0F);
+            std::replace_if(numbers.values.begin(), numbers.values.end(), is_bad, 0.0F);
         }
-        return std::optional<Numbers>(std::move(*numbers));
+        return std::optional<Numbers>(std::move(numbers));
     }
 
     Result<std::optional<std::vector<std::uint32_t>>> read_joints(const std::string& name) {
         const auto found = attributes_.find(name);
         if (found == attributes_.end()) return std::nullopt;
-        auto layout = document_.layout(found->second);
-        if (!layout) return failure(std::move(layout));
-        if ((*layout)->components != 4 || (*layout)->count != count())
+        DARKROOM_TRY_VALUE(auto layout, document_.layout(found->second));
+        if (layout->components != 4 || layout->count != count())
             return user_error(fmt::format("{}/{}: accessor {} has {} elements of {} numbers, {} of 4 are needed",
-                                          pointer_, name, found->second, (*layout)->count, (*layout)->components,
-                                          count()));
-        auto joints = document_.integers(found->second);
-        if (!joints) return failure(std::move(joints));
-        return std::optional<std::vector<std::uint32_t>>(std::move(*joints));
+                                          pointer_, name, found->second, layout->count, layout->components, count()));
+        DARKROOM_TRY_VALUE(auto joints, document_.integers(found->second));
+        return std::optional<std::vector<std::uint32_t>>(std::move(joints));
     }
 
   private:
@@ -101,50 +96,45 @@ void warn_without_extent(Document& document, int accessor) {
 
 Result<> read_vertices(Document& document, AttributeReader& reader, const tinygltf::Primitive& source,
                        Primitive& primitive) {
-    auto positions = reader.read("POSITION", 3, Integers::Quantized);
-    if (!positions) return failure(std::move(positions));
-    if (auto charged = document.budget().take("/meshes", "vertices", reader.count(), sizeof(Vertex)); !charged)
-        return charged;
+    DARKROOM_TRY_VALUE(auto positions, reader.read("POSITION", 3, Integers::Quantized));
+    DARKROOM_TRY(document.budget().take("/meshes", "vertices", reader.count(), sizeof(Vertex)));
     primitive.vertices.resize(reader.count());
     for (std::size_t i = 0; i < reader.count(); ++i) {
-        primitive.vertices[i].position = vec3_at(**positions, i);
+        primitive.vertices[i].position = vec3_at(*positions, i);
         primitive.bounds.add(primitive.vertices[i].position);
     }
     warn_without_extent(document, source.attributes.at("POSITION"));
 
-    auto normals = reader.read("NORMAL", 3, Integers::Quantized);
-    if (!normals) return failure(std::move(normals));
-    auto tangents = reader.read("TANGENT", 4, Integers::Quantized);
-    if (!tangents) return failure(std::move(tangents));
-    auto uv0 = reader.read(
-        "TEXCOORD_0", 2, document.uses_extension("KHR_mesh_quantization") ? Integers::Quantized : Integers::Normalized);
-    if (!uv0) return failure(std::move(uv0));
-    auto uv1 = reader.read(
-        "TEXCOORD_1", 2, document.uses_extension("KHR_mesh_quantization") ? Integers::Quantized : Integers::Normalized);
-    if (!uv1) return failure(std::move(uv1));
-    auto colors = reader.read("COLOR_0", 3, Integers::Normalized, true);
-    if (!colors) return failure(std::move(colors));
+    DARKROOM_TRY_VALUE(auto normals, reader.read("NORMAL", 3, Integers::Quantized));
+    DARKROOM_TRY_VALUE(auto tangents, reader.read("TANGENT", 4, Integers::Quantized));
+    DARKROOM_TRY_VALUE(auto uv0, reader.read("TEXCOORD_0", 2,
+                                             document.uses_extension("KHR_mesh_quantization") ? Integers::Quantized
+                                                                                              : Integers::Normalized));
+    DARKROOM_TRY_VALUE(auto uv1, reader.read("TEXCOORD_1", 2,
+                                             document.uses_extension("KHR_mesh_quantization") ? Integers::Quantized
+                                                                                              : Integers::Normalized));
+    DARKROOM_TRY_VALUE(auto colors, reader.read("COLOR_0", 3, Integers::Normalized, true));
     const auto is_outside = [](float value) { return value < 0 || value > 1; };
-    if (*colors && std::any_of((*colors)->values.begin(), (*colors)->values.end(), is_outside))
+    if (colors && std::any_of(colors->values.begin(), colors->values.end(), is_outside))
         document.faults().warn(fmt::format("/accessors/{}: colours outside [0, 1]", source.attributes.at("COLOR_0")));
     for (std::size_t i = 0; i < reader.count(); ++i) {
         Vertex& vertex = primitive.vertices[i];
-        if (*normals) {
-            const vec3 normal = vec3_at(**normals, i);
+        if (normals) {
+            const vec3 normal = vec3_at(*normals, i);
             const float length = glm::length(normal);
             if (length > 0 && std::isfinite(length)) vertex.normal = normal / length;
-            if (*tangents) {
-                const float* tangent = (*tangents)->values.data() + i * 4;
+            if (tangents) {
+                const float* tangent = tangents->values.data() + i * 4;
                 const vec3 direction(tangent[0], tangent[1], tangent[2]);
                 const float size = glm::length(direction);
                 if (size > 0 && std::isfinite(size)) vertex.tangent = vec4(direction / size, tangent[3] < 0 ? -1 : 1);
             }
         }
-        if (*uv0) vertex.uv0 = {(*uv0)->values[i * 2], (*uv0)->values[i * 2 + 1]};
-        if (*uv1) vertex.uv1 = {(*uv1)->values[i * 2], (*uv1)->values[i * 2 + 1]};
-        if (*colors)
-            for (std::uint32_t c = 0; c < (*colors)->components; ++c)
-                vertex.color[c] = to_byte((*colors)->values[i * (*colors)->components + c]);
+        if (uv0) vertex.uv0 = {uv0->values[i * 2], uv0->values[i * 2 + 1]};
+        if (uv1) vertex.uv1 = {uv1->values[i * 2], uv1->values[i * 2 + 1]};
+        if (colors)
+            for (std::uint32_t c = 0; c < colors->components; ++c)
+                vertex.color[c] = to_byte(colors->values[i * colors->components + c]);
     }
     return {};
 }
@@ -167,22 +157,19 @@ VertexSkin largest_influences(std::array<std::pair<float, std::uint32_t>, 8>& in
 Result<> read_skin(Document& document, AttributeReader& reader, const std::string& pointer, Primitive& primitive) {
     if (!reader.has("JOINTS_0") && !reader.has("WEIGHTS_0")) return {};
     constexpr std::uint64_t size = sizeof(VertexSkin) + sizeof(std::array<std::pair<float, std::uint32_t>, 8>);
-    if (auto charged = document.budget().take("/meshes", "skinned vertices", reader.count(), size); !charged)
-        return charged;
+    DARKROOM_TRY(document.budget().take("/meshes", "skinned vertices", reader.count(), size));
     std::vector<std::array<std::pair<float, std::uint32_t>, 8>> influences(reader.count());
     for (std::size_t set = 0; set < 2; ++set) {
         const std::string joints_name = fmt::format("JOINTS_{}", set);
         const std::string weights_name = fmt::format("WEIGHTS_{}", set);
         if (reader.has(joints_name) != reader.has(weights_name))
             return user_error(fmt::format("{}: {} and {} need each other", pointer, joints_name, weights_name));
-        auto joints = reader.read_joints(joints_name);
-        if (!joints) return failure(std::move(joints));
-        auto weights = reader.read(weights_name, 4, Integers::Normalized);
-        if (!weights) return failure(std::move(weights));
-        if (!*joints || !*weights) continue;
+        DARKROOM_TRY_VALUE(auto joints, reader.read_joints(joints_name));
+        DARKROOM_TRY_VALUE(auto weights, reader.read(weights_name, 4, Integers::Normalized));
+        if (!joints || !weights) continue;
         for (std::size_t i = 0; i < reader.count() * 4; ++i) {
-            const std::uint32_t joint = (**joints)[i];
-            const float weight = std::max((*weights)->values[i], 0.0F);
+            const std::uint32_t joint = (*joints)[i];
+            const float weight = std::max(weights->values[i], 0.0F);
             if (joint > 0xffff && weight > 0)
                 return user_error(
                     fmt::format("{}/{}: joint {}, at most 65535 is allowed", pointer, joints_name, joint));
@@ -203,22 +190,18 @@ Result<> read_targets(Document& document, const tinygltf::Primitive& source, con
             if (!source.attributes.contains(name))
                 document.faults().warn(
                     fmt::format("{}/targets/{}/{}: the primitive has no such attribute", pointer, t, name));
-        auto positions = reader.read("POSITION", 3, Integers::Quantized);
-        if (!positions) return failure(std::move(positions));
-        if (*positions) warn_without_extent(document, source.targets[t].at("POSITION"));
-        auto normals = reader.read("NORMAL", 3, Integers::Quantized);
-        if (!normals) return failure(std::move(normals));
-        if (auto charged = document.budget().take("/meshes", "vertices of morph targets", primitive.vertices.size(),
-                                                  2 * sizeof(vec3));
-            !charged)
-            return charged;
+        DARKROOM_TRY_VALUE(auto positions, reader.read("POSITION", 3, Integers::Quantized));
+        if (positions) warn_without_extent(document, source.targets[t].at("POSITION"));
+        DARKROOM_TRY_VALUE(auto normals, reader.read("NORMAL", 3, Integers::Quantized));
+        DARKROOM_TRY(document.budget().take("/meshes", "vertices of morph targets", primitive.vertices.size(),
+                                            2 * sizeof(vec3)));
         MorphTarget target;
         target.positions.resize(primitive.vertices.size());
-        if (*positions)
-            for (std::size_t i = 0; i < target.positions.size(); ++i) target.positions[i] = vec3_at(**positions, i);
-        if (*normals && has_normals) {
+        if (positions)
+            for (std::size_t i = 0; i < target.positions.size(); ++i) target.positions[i] = vec3_at(*positions, i);
+        if (normals && has_normals) {
             target.normals.resize(primitive.vertices.size());
-            for (std::size_t i = 0; i < target.normals.size(); ++i) target.normals[i] = vec3_at(**normals, i);
+            for (std::size_t i = 0; i < target.normals.size(); ++i) target.normals[i] = vec3_at(*normals, i);
         }
         primitive.targets.push_back(std::move(target));
     }
@@ -228,33 +211,30 @@ Result<> read_targets(Document& document, const tinygltf::Primitive& source, con
 Result<std::vector<std::uint32_t>> read_corners(Document& document, const tinygltf::Primitive& source,
                                                 const std::string& pointer, std::size_t vertex_count) {
     if (source.indices < 0) {
-        if (auto charged = document.budget().take(pointer, "corners", vertex_count, sizeof(std::uint32_t)); !charged)
-            return failure(std::move(charged));
+        DARKROOM_TRY(document.budget().take(pointer, "corners", vertex_count, sizeof(std::uint32_t)));
         std::vector<std::uint32_t> corners(vertex_count);
         for (std::size_t i = 0; i < vertex_count; ++i) corners[i] = static_cast<std::uint32_t>(i);
         return corners;
     }
-    auto layout = document.layout(source.indices);
-    if (!layout) return failure(std::move(layout));
-    if ((*layout)->components != 1)
+    DARKROOM_TRY_VALUE(auto layout, document.layout(source.indices));
+    if (layout->components != 1)
         return user_error(fmt::format("{}/indices: accessor {} is not a SCALAR", pointer, source.indices));
     if (const int view = document.model().accessors[static_cast<std::size_t>(source.indices)].bufferView; view >= 0)
         if (document.model().bufferViews[static_cast<std::size_t>(view)].byteStride != 0)
             document.faults().warn(fmt::format("{}/indices: bufferView {} has a byteStride", pointer, view));
-    auto corners = document.integers(source.indices);
-    if (!corners) return failure(std::move(corners));
+    DARKROOM_TRY_VALUE(auto corners, document.integers(source.indices));
     std::uint32_t restart = 0xffffffff;
-    if ((*layout)->component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) restart = 0xff;
-    if ((*layout)->component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) restart = 0xffff;
-    if (std::find(corners->begin(), corners->end(), restart) != corners->end())
+    if (layout->component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) restart = 0xff;
+    if (layout->component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) restart = 0xffff;
+    if (std::find(corners.begin(), corners.end(), restart) != corners.end())
         document.faults().warn(
             fmt::format("{}/indices: accessor {} has the index {}, which some readers take for a "
                         "restart",
                         pointer, source.indices, restart));
-    for (std::size_t i = 0; i < corners->size(); ++i)
-        if ((*corners)[i] >= vertex_count)
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        if (corners[i] >= vertex_count)
             return user_error(fmt::format("{}/indices: number {} of accessor {} is {}, there are {} vertices", pointer,
-                                          i, source.indices, (*corners)[i], vertex_count));
+                                          i, source.indices, corners[i], vertex_count));
     return corners;
 }
 
@@ -309,14 +289,11 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     const std::uint64_t taken = budget.taken();
     AttributeReader reader(document, source.attributes, fmt::format("{}/attributes", pointer));
     Primitive primitive;
-    if (auto read = read_vertices(document, reader, source, primitive); !read) return failure(std::move(read));
-    if (auto read = read_skin(document, reader, fmt::format("{}/attributes", pointer), primitive); !read)
-        return failure(std::move(read));
+    DARKROOM_TRY(read_vertices(document, reader, source, primitive));
+    DARKROOM_TRY(read_skin(document, reader, fmt::format("{}/attributes", pointer), primitive));
     const bool has_normals = reader.has("NORMAL");
-    if (auto read = read_targets(document, source, pointer, has_normals, primitive); !read)
-        return failure(std::move(read));
-    auto corners = read_corners(document, source, pointer, primitive.vertices.size());
-    if (!corners) return failure(std::move(corners));
+    DARKROOM_TRY(read_targets(document, source, pointer, has_normals, primitive));
+    DARKROOM_TRY_VALUE(auto corners, read_corners(document, source, pointer, primitive.vertices.size()));
     if (source.mode < TINYGLTF_MODE_TRIANGLES) {
         document.faults().warn(fmt::format("{}: points and lines are not drawn", pointer));
         budget.give_back_to(taken);
@@ -324,16 +301,14 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     }
     if (source.material >= 0) primitive.material = static_cast<std::uint32_t>(source.material);
     primitive.variants = read_variants(source);
-    if (source.mode == TINYGLTF_MODE_TRIANGLES && corners->size() % 3 != 0)
+    if (source.mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0)
         document.faults().warn(fmt::format("{}: {} corners do not make whole triangles; the last are passed over",
-                                           pointer, corners->size()));
-    if (auto charged = budget.take(pointer, "corners", corners->size(), 3 * sizeof(std::uint32_t)); !charged)
-        return failure(std::move(charged));
-    primitive.indices = triangles_of(*corners, source.mode);
+                                           pointer, corners.size()));
+    DARKROOM_TRY(budget.take(pointer, "corners", corners.size(), 3 * sizeof(std::uint32_t)));
+    primitive.indices = triangles_of(corners, source.mode);
     if (!has_normals) {
         const std::size_t vertex_size = sizeof(Vertex) + sizeof(VertexSkin) + primitive.targets.size() * sizeof(vec3);
-        if (auto charged = budget.take(pointer, "vertices", primitive.indices.size(), vertex_size); !charged)
-            return failure(std::move(charged));
+        DARKROOM_TRY(budget.take(pointer, "vertices", primitive.indices.size(), vertex_size));
         make_flat(primitive);
     } else {
         drop_unused_vertices(primitive);
@@ -347,8 +322,7 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     for (const Vertex& vertex : primitive.vertices) primitive.bounds.add(vertex.position);
     // From here on only the result takes memory.
     budget.give_back_to(taken);
-    if (auto charged = budget.take(pointer, "bytes", size_in_memory(primitive), 1); !charged)
-        return failure(std::move(charged));
+    DARKROOM_TRY(budget.take(pointer, "bytes", size_in_memory(primitive), 1));
     return std::optional<Primitive>(std::move(primitive));
 }
 
@@ -356,7 +330,7 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
 
 Result<Mesh> convert_mesh(Document& document, std::size_t index) {
     const std::string pointer = fmt::format("/meshes/{}", index);
-    if (auto checked = document.faults().check(pointer); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(document.faults().check(pointer));
     const tinygltf::Mesh& source = document.model().meshes[index];
     Mesh mesh{.name = source.name};
     std::size_t target_count = 0;
@@ -366,9 +340,9 @@ Result<Mesh> convert_mesh(Document& document, std::size_t index) {
             return user_error(fmt::format("{}/primitives/{}/targets: {} morph targets, the first primitive has {}",
                                           pointer, i, targets, target_count));
         target_count = targets;
-        auto primitive = convert_primitive(document, source.primitives[i], fmt::format("{}/primitives/{}", pointer, i));
-        if (!primitive) return failure(std::move(primitive));
-        if (*primitive) mesh.primitives.push_back(std::move(**primitive));
+        DARKROOM_TRY_VALUE(auto primitive, convert_primitive(document, source.primitives[i],
+                                                             fmt::format("{}/primitives/{}", pointer, i)));
+        if (primitive) mesh.primitives.push_back(std::move(*primitive));
     }
     if (!source.weights.empty() && source.weights.size() != target_count)
         document.faults().warn(

@@ -71,35 +71,32 @@ std::vector<std::uint32_t> find_roots(const std::vector<std::uint32_t>& parents)
 
 Result<NodeOrder> order_nodes(Document& document) {
     const tinygltf::Model& model = document.model();
-    auto parents = find_parents(model);
-    if (!parents) return failure(std::move(parents));
-    if (auto checked = refuse_cycles(*parents); !checked) return failure(std::move(checked));
+    DARKROOM_TRY_VALUE(auto parents, find_parents(model));
+    DARKROOM_TRY(refuse_cycles(parents));
 
     std::vector<int> roots;
     if (model.scenes.empty()) {
         for (std::size_t node = 0; node < model.nodes.size(); ++node)
-            if ((*parents)[node] == no_index) roots.push_back(static_cast<int>(node));
+            if (parents[node] == no_index) roots.push_back(static_cast<int>(node));
     } else {
         const std::size_t scene = model.defaultScene < 0 ? 0 : at(model.defaultScene);
-        if (auto checked = document.faults().check(fmt::format("/scenes/{}", scene)); !checked)
-            return failure(std::move(checked));
+        DARKROOM_TRY(document.faults().check(fmt::format("/scenes/{}", scene)));
         roots = model.scenes[scene].nodes;
         for (const int root : roots)
-            if ((*parents)[at(root)] != no_index)
+            if (parents[at(root)] != no_index)
                 return user_error(
-                    fmt::format("/scenes/{}/nodes: node {} is a child of node {}", scene, root, (*parents)[at(root)]));
+                    fmt::format("/scenes/{}/nodes: node {} is a child of node {}", scene, root, parents[at(root)]));
     }
 
-    NodeOrder order{.root = find_roots(*parents)};
+    NodeOrder order{.root = find_roots(parents)};
     order.new_index.assign(model.nodes.size(), no_index);
     std::vector<int> open(roots.rbegin(), roots.rend());
     while (!open.empty()) {
         const int node = open.back();
         open.pop_back();
-        if (auto checked = document.faults().check(fmt::format("/nodes/{}", node)); !checked)
-            return failure(std::move(checked));
+        DARKROOM_TRY(document.faults().check(fmt::format("/nodes/{}", node)));
         if (order.new_index[at(node)] != no_index) return user_error(fmt::format("/scenes: node {} twice", node));
-        const std::uint32_t parent = (*parents)[at(node)];
+        const std::uint32_t parent = parents[at(node)];
         order.new_index[at(node)] = static_cast<std::uint32_t>(order.file_index.size());
         order.file_index.push_back(static_cast<std::uint32_t>(node));
         order.parent.push_back(parent == no_index ? no_index : order.new_index[parent]);
@@ -151,15 +148,14 @@ Node convert_node(Document& document, std::uint32_t file_index, std::uint32_t pa
 
 Result<Skin> convert_skin(Document& document, std::size_t index, const NodeOrder& order) {
     const std::string pointer = fmt::format("/skins/{}", index);
-    if (auto checked = document.faults().check(pointer); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(document.faults().check(pointer));
     const tinygltf::Skin& source = document.model().skins[index];
     if (source.joints.empty()) return user_error(fmt::format("{}/joints: is empty", pointer));
     // Joints must hang together (glTF 2.0 specification, 3.7.3.2), which drawing them does not need.
     for (const int joint : source.joints)
         if (order.root[at(joint)] != order.root[at(source.joints.front())])
             document.faults().warn(fmt::format("{}/joints: have no common root", pointer));
-    if (auto taken = document.budget().take(pointer, "joints", source.joints.size(), 2 * sizeof(mat4)); !taken)
-        return failure(std::move(taken));
+    DARKROOM_TRY(document.budget().take(pointer, "joints", source.joints.size(), 2 * sizeof(mat4)));
     Skin skin;
     std::vector<bool> is_joint(order.file_index.size());
     for (const int joint : source.joints) {
@@ -173,19 +169,17 @@ Result<Skin> convert_skin(Document& document, std::size_t index, const NodeOrder
     skin.inverse_bind.assign(skin.joints.size(), mat4(1));
     if (source.inverseBindMatrices < 0) return skin;
     const std::string place = fmt::format("{}/inverseBindMatrices", pointer);
-    auto layout = document.layout(source.inverseBindMatrices);
-    if (!layout) return failure(std::move(layout));
-    const Layout& shape = **layout;
+    DARKROOM_TRY_VALUE(auto layout, document.layout(source.inverseBindMatrices));
+    const Layout& shape = *layout;
     if (shape.components != 16 || shape.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
         return user_error(fmt::format("{}: accessor {} is not MAT4 of floats", place, source.inverseBindMatrices));
     if (shape.count < skin.joints.size())
         return user_error(fmt::format("{}: accessor {} has {} matrices for {} joints", place,
                                       source.inverseBindMatrices, shape.count, skin.joints.size()));
-    auto numbers = document.numbers(source.inverseBindMatrices);
-    if (!numbers) return failure(std::move(numbers));
+    DARKROOM_TRY_VALUE(auto numbers, document.numbers(source.inverseBindMatrices));
     for (std::size_t i = 0; i < skin.joints.size(); ++i) {
         mat4& matrix = skin.inverse_bind[i];
-        for (int c = 0; c < 16; ++c) matrix[c / 4][c % 4] = numbers->values[i * 16 + at(c)];
+        for (int c = 0; c < 16; ++c) matrix[c / 4][c % 4] = numbers.values[i * 16 + at(c)];
         for (int c = 0; c < 16; ++c)
             if (!std::isfinite(matrix[c / 4][c % 4]))
                 return user_error(fmt::format("{}: matrix {} is not finite", place, i));

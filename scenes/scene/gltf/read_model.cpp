@@ -75,29 +75,22 @@ Result<> make_missing_tangents(Document& document, Model& model) {
             const std::string place = fmt::format("/meshes/{}", i);
             const std::uint64_t taken = document.budget().taken();
             const std::size_t before = size_in_memory(primitive);
-            if (auto charged = document.budget().take(place, "vertices with tangents", primitive.vertices.size(),
-                                                      tangent_bytes_per_vertex(primitive));
-                !charged)
-                return charged;
-            if (auto charged = document.budget().take(place, "corners with tangents", primitive.indices.size(),
-                                                      tangent_bytes_per_corner);
-                !charged)
-                return charged;
+            DARKROOM_TRY(document.budget().take(place, "vertices with tangents", primitive.vertices.size(),
+                                                tangent_bytes_per_vertex(primitive)));
+            DARKROOM_TRY(document.budget().take(place, "corners with tangents", primitive.indices.size(),
+                                                tangent_bytes_per_corner));
             make_tangents(primitive, texture);
             document.budget().give_back_to(taken);
-            if (auto charged = document.budget().take(place, "bytes", size_in_memory(primitive) - before, 1); !charged)
-                return charged;
+            DARKROOM_TRY(document.budget().take(place, "bytes", size_in_memory(primitive) - before, 1));
         }
     return {};
 }
 
 Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model) {
     const tinygltf::Model& source = document.model();
-    if (auto done = convert_all(
-            document, source.meshes.size(), needed(source.meshes.size(), model.nodes, &Node::mesh),
-            [&](std::size_t i) { return convert_mesh(document, i); }, model.meshes);
-        !done)
-        return done;
+    DARKROOM_TRY(convert_all(
+        document, source.meshes.size(), needed(source.meshes.size(), model.nodes, &Node::mesh),
+        [&](std::size_t i) { return convert_mesh(document, i); }, model.meshes));
     std::vector<bool> is_material_needed(source.materials.size());
     const std::vector<bool> is_mesh_needed = needed(source.meshes.size(), model.nodes, &Node::mesh);
     for (std::size_t mesh = 0; mesh < model.meshes.size(); ++mesh)
@@ -106,17 +99,13 @@ Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model)
             if (primitive.material != no_index) is_material_needed[primitive.material] = true;
             for (const VariantMaterial& variant : primitive.variants) is_material_needed[variant.material] = true;
         }
-    Result<std::vector<Image>> images = convert_images(document);
-    if (!images) return failure(std::move(images));
-    model.images = std::move(*images);
+    DARKROOM_TRY_VALUE(model.images, convert_images(document));
     std::vector<bool> is_broken;
     for (const Image& image : model.images) is_broken.push_back(image.is_empty());
-    if (auto done = convert_all(
-            document, source.materials.size(), is_material_needed,
-            [&](std::size_t i) { return convert_material(document, i, is_broken); }, model.materials);
-        !done)
-        return done;
-    if (auto done = make_missing_tangents(document, model); !done) return done;
+    DARKROOM_TRY(convert_all(
+        document, source.materials.size(), is_material_needed,
+        [&](std::size_t i) { return convert_material(document, i, is_broken); }, model.materials));
+    DARKROOM_TRY(make_missing_tangents(document, model));
     return convert_all(
         document, source.skins.size(), needed(source.skins.size(), model.nodes, &Node::skin),
         [&](std::size_t i) { return convert_skin(document, i, order); }, model.skins);
@@ -185,24 +174,22 @@ Result<> check_nodes(Document& document, const NodeOrder& order, Model& model) {
 }
 
 Result<Model> read(const std::filesystem::path& path, Budget budget, NamedFiles named_files) {
-    auto document = Document::open(path, std::move(budget), named_files);
-    if (!document) return failure(std::move(document));
-    auto order = order_nodes(*document);
-    if (!order) return failure(std::move(order));
+    DARKROOM_TRY_VALUE(auto document, Document::open(path, std::move(budget), named_files));
+    DARKROOM_TRY_VALUE(auto order, order_nodes(document));
     Model model{.name = path.stem().string()};
-    for (std::size_t i = 0; i < order->file_index.size(); ++i)
-        model.nodes.push_back(convert_node(*document, order->file_index[i], order->parent[i]));
+    for (std::size_t i = 0; i < order.file_index.size(); ++i)
+        model.nodes.push_back(convert_node(document, order.file_index[i], order.parent[i]));
     // The others only for what is wrong with them.
-    for (std::uint32_t i = 0; i < order->new_index.size(); ++i)
-        if (order->new_index[i] == no_index) static_cast<void>(convert_node(*document, i, no_index));
-    if (auto done = convert_drawn(*document, *order, model); !done) return failure(std::move(done));
-    if (auto done = check_nodes(*document, *order, model); !done) return failure(std::move(done));
-    if (auto done = convert_rest(*document, *order, model); !done) return failure(std::move(done));
-    read_variant_names(document->model(), model.variants);
-    if (auto done = gltf::add_instances(*document, *order, model); !done) return failure(std::move(done));
-    if (auto done = document->budget().check(); !done) return failure(std::move(done));
-    model.file_bytes = document->budget().file_bytes();
-    for (std::string& warning : document->faults().take_warnings())
+    for (std::uint32_t i = 0; i < order.new_index.size(); ++i)
+        if (order.new_index[i] == no_index) static_cast<void>(convert_node(document, i, no_index));
+    DARKROOM_TRY(convert_drawn(document, order, model));
+    DARKROOM_TRY(check_nodes(document, order, model));
+    DARKROOM_TRY(convert_rest(document, order, model));
+    read_variant_names(document.model(), model.variants);
+    DARKROOM_TRY(gltf::add_instances(document, order, model));
+    DARKROOM_TRY(document.budget().check());
+    model.file_bytes = document.budget().file_bytes();
+    for (std::string& warning : document.faults().take_warnings())
         model.warnings.push_back(one_printable_line(warning));
     return model;
 }

@@ -357,8 +357,8 @@ std::vector<std::string> Faults::take_warnings() {
 }
 
 Result<> check_structure(json& root, Faults& faults, Budget& budget) {
-    if (auto checked = check_asset(root, faults); !checked) return checked;
-    if (auto checked = check_extensions(root, faults); !checked) return checked;
+    DARKROOM_TRY(check_asset(root, faults));
+    DARKROOM_TRY(check_extensions(root, faults));
     Checker checker(root, faults);
     checker.check_root(root);
     json kept = json::object();
@@ -369,22 +369,19 @@ Result<> check_structure(json& root, Faults& faults, Budget& budget) {
         if (!found->is_array())
             return user_error(fmt::format("/{}: {}, an array is needed", array.name, shown(*found)));
         const std::string pointer = fmt::format("/{}", array.name);
-        if (auto taken = budget.take(pointer, "elements", found->size(), array.element_size); !taken) return taken;
+        DARKROOM_TRY(budget.take(pointer, "elements", found->size(), array.element_size));
         checker.check_array(*found, *array.definition, array.placeholder, pointer);
         kept[std::string(array.name)] = std::move(*found);
     }
     if (const json* variants = Checker::find_array(root, "KHR_materials_variants", "variants")) {
         const std::string_view pointer = "/extensions/KHR_materials_variants/variants";
-        if (auto taken = budget.take(pointer, "elements", variants->size(), element_size); !taken) return taken;
+        DARKROOM_TRY(budget.take(pointer, "elements", variants->size(), element_size));
         json copy = *variants;
         checker.check_array(copy, variant_definition, R"({"name":""})", std::string(pointer));
         kept["extensions"]["KHR_materials_variants"]["variants"] = std::move(copy);
     }
     if (const json* lights = Checker::find_array(root, "KHR_lights_punctual", "lights")) {
-        if (auto taken =
-                budget.take("/extensions/KHR_lights_punctual/lights", "elements", lights->size(), element_size);
-            !taken)
-            return taken;
+        DARKROOM_TRY(budget.take("/extensions/KHR_lights_punctual/lights", "elements", lights->size(), element_size));
         json copy = *lights;
         checker.check_array(copy, light_definition, light_placeholder, "/extensions/KHR_lights_punctual/lights");
         for (json& light : copy)

@@ -16,15 +16,13 @@ constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 
 Result<MeshoptDesc> meshopt_desc(const nlohmann::json& extension) {
-    const auto mode = meshopt_mode(extension["mode"].get<std::string>());
-    if (!mode) return failure(mode.error());
-    const auto filter = meshopt_filter(extension.value("filter", "NONE"));
-    if (!filter) return failure(filter.error());
-    const MeshoptDesc desc{.mode = *mode,
-                           .filter = *filter,
+    DARKROOM_TRY_VALUE(const auto mode, meshopt_mode(extension["mode"].get<std::string>()));
+    DARKROOM_TRY_VALUE(const auto filter, meshopt_filter(extension.value("filter", "NONE")));
+    const MeshoptDesc desc{.mode = mode,
+                           .filter = filter,
                            .count = extension["count"].get<std::uint64_t>(),
                            .stride = extension["byteStride"].get<std::uint64_t>()};
-    if (auto checked = check_meshopt(desc); !checked) return failure(std::move(checked));
+    DARKROOM_TRY(check_meshopt(desc));
     return desc;
 }
 
@@ -65,7 +63,7 @@ Result<> Document::unpack_view(const nlohmann::json& view, std::size_t index) {
     if (!desc) return user_error(fmt::format("{}/{}", place, desc.error().text));
 
     const auto buffer = extension["buffer"].get<std::size_t>();
-    if (auto checked = faults_.check(fmt::format("/buffers/{}", buffer)); !checked) return checked;
+    DARKROOM_TRY(faults_.check(fmt::format("/buffers/{}", buffer)));
     const std::size_t offset = extension.value("byteOffset", std::size_t{0});
     const auto packed_size = extension["byteLength"].get<std::size_t>();
     const std::size_t size = buffers_[buffer].size();
@@ -73,7 +71,7 @@ Result<> Document::unpack_view(const nlohmann::json& view, std::size_t index) {
         return user_error(
             fmt::format("{}: bytes {} to {}, buffer {} has {}", place, offset, offset + packed_size, buffer, size));
 
-    if (const auto taken = budget_.take(place, "elements", desc->count, desc->stride); !taken) return taken;
+    DARKROOM_TRY(budget_.take(place, "elements", desc->count, desc->stride));
     const std::uint64_t bytes = desc->count * desc->stride;
     if (const auto said = view["byteLength"].get<std::uint64_t>(); said != bytes)
         return user_error(fmt::format("{}/byteLength: {}, {} elements of {} bytes are packed", pointer, said,
@@ -160,10 +158,10 @@ Result<> Document::unpack_primitive(const tinygltf::Primitive& primitive, const 
     for (const DracoAttribute& attribute : attributes) vertex_bytes += attribute.components * sizeof(float);
     budget_.add_unpacked(packed->size(), *vertices * vertex_bytes + corner_count * sizeof(std::uint32_t));
     const std::uint64_t kept = budget_.taken();
-    if (auto taken = budget_.take(place, "corners", corner_count, sizeof(std::uint32_t)); !taken) return taken;
-    if (auto taken = budget_.take(place, "vertices", *vertices, vertex_bytes); !taken) return taken;
+    DARKROOM_TRY(budget_.take(place, "corners", corner_count, sizeof(std::uint32_t)));
+    DARKROOM_TRY(budget_.take(place, "vertices", *vertices, vertex_bytes));
     const std::uint64_t result = budget_.taken();
-    if (auto taken = budget_.take(place, "triangles", head->triangles, head->bytes_per_triangle); !taken) return taken;
+    DARKROOM_TRY(budget_.take(place, "triangles", head->triangles, head->bytes_per_triangle));
     const auto admit = [&](std::uint64_t count, std::uint64_t bytes) {
         return budget_.take(place, "packed vertices", count, bytes);
     };

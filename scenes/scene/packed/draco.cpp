@@ -82,7 +82,7 @@ Result<DracoHead> read_draco_head(std::span<const std::byte> bytes) {
 
 Result<> unpack_draco(std::span<const std::byte> bytes, std::uint64_t vertices, const AdmitVertices& admit,
                       std::span<DracoAttribute> attributes, std::vector<std::uint32_t>& corners) {
-    if (auto head = read_draco_head(bytes); !head) return failure(std::move(head));
+    DARKROOM_TRY(read_draco_head(bytes));
     static const Result<const void*> loaded = load_module("libdarkroom_draco.so", "darkroom_draco", "Draco");
     if (!loaded) return failure(loaded.error());
     return static_cast<const DracoModule*>(*loaded)->unpack(bytes, vertices, admit, attributes, corners);

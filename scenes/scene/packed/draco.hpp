@@ -6,10 +6,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <darkroom/result.hpp>
 #include <functional>
 #include <span>
 #include <vector>
+
+#include "core/try.hpp"
 
 namespace darkroom::scene {
 

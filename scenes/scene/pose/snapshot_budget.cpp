@@ -127,7 +127,7 @@ class Check {
             if (const std::uint32_t model = assets_of(assets_, i).model; model != no_index)
                 take_model(entity, model, parents[i]);
             if (unknown_variant_) return user_error(*unknown_variant_);
-            if (Result<> done = budget_.check(); !done) return done;
+            DARKROOM_TRY(budget_.check());
         }
         return {};
     }

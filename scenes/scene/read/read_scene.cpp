@@ -39,7 +39,7 @@ Result<Scene> SceneReader::read() {
     report_unknown_components();
     link_parents();
     inherit_base_colors();
-    if (const Result<> done = report_.finish(options_.warnings); !done) return failure(done.error());
+    DARKROOM_TRY(report_.finish(options_.warnings));
     return std::move(scene_);
 }
 
@@ -256,7 +256,7 @@ void SceneReader::inherit_base_colors() {
 namespace {
 
 Result<Scene> scene_of_model(const std::filesystem::path& path, NamedFiles named_files) {
-    if (const auto start = read_file(path, {.max_size = 1, .takes_start = true}); !start) return failure(start.error());
+    DARKROOM_TRY(read_file(path, {.max_size = 1, .takes_start = true}));
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(path, error);
     Scene scene{.name = path.stem().string(),
@@ -272,10 +272,9 @@ Result<Scene> scene_of_model(const std::filesystem::path& path, NamedFiles named
 
 Result<Scene> scene_of(const toml::table& table, std::string_view text, const std::filesystem::path& file,
                        const SceneOptions& options) {
-    Result<Scene> scene = SceneReader(table, file, options).read();
-    if (!scene) return scene;
-    scene->file_bytes += text.size();
-    scene->named_files = options.named_files;
+    DARKROOM_TRY_VALUE(Scene scene, SceneReader(table, file, options).read());
+    scene.file_bytes += text.size();
+    scene.named_files = options.named_files;
     return scene;
 }
 
@@ -293,9 +292,8 @@ bool has_look(const toml::table& file) { return file.contains("post_process") ||
 
 Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file, const SceneOptions& options) {
     const std::string shown = printable(file.string());
-    const Result<toml::table> table = parse_toml(text, shown);
-    if (!table) return failure(table.error());
-    return reading::scene_of(*table, text, file, options);
+    DARKROOM_TRY_VALUE(const toml::table table, parse_toml(text, shown));
+    return reading::scene_of(table, text, file, options);
 }
 
 bool is_model_path(const std::filesystem::path& path) {
@@ -309,17 +307,15 @@ Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& 
     if (!extension.empty() && extension != ".toml")
         return user_error(
             fmt::format("{}: expected a scene (.toml) or a model (.glb, .gltf)", printable(path.string())));
-    const Result<std::string> text = reading::read_scene_text(path);
-    if (!text) return failure(text.error());
+    DARKROOM_TRY_VALUE(const std::string text, reading::read_scene_text(path));
     const std::string shown = printable(path.string());
-    const Result<toml::table> table = parse_toml(*text, shown);
-    if (!table) return failure(table.error());
-    if (!reading::is_scene(*table))
+    DARKROOM_TRY_VALUE(const toml::table table, parse_toml(text, shown));
+    if (!reading::is_scene(table))
         return user_error(
             fmt::format("{}: is not a scene: it has no table [scene], [camera], [environment], [entities], "
                         "[prefabs], nor any other table of a scene{}",
-                        shown, reading::has_look(*table) ? "; a look is what --look takes" : ""));
-    return reading::scene_of(*table, *text, path, options);
+                        shown, reading::has_look(table) ? "; a look is what --look takes" : ""));
+    return reading::scene_of(table, text, path, options);
 }
 
 vec4 archetype_color(std::string_view archetype) {

@@ -7,9 +7,8 @@
 namespace darkroom::scene::reading {
 
 Result<std::string> read_scene_text(const std::filesystem::path& path) {
-    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_toml_bytes});
-    if (!bytes) return failure(bytes.error());
-    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, read_file(path, {.max_size = max_toml_bytes}));
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
 }  // namespace darkroom::scene::reading
