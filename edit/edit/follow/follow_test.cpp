@@ -183,7 +183,7 @@ TEST_F(FollowByName, TablesAreDefinedOnceAndForgotten) {
     EXPECT_TRUE(needs_compile([&](Look& look) { return duplicate_entry(look, "lut").map([](auto&&) {}); }));
     EXPECT_EQ(composer_.resources().begin()->first, number);
     EXPECT_EQ(composer_.resources().size(), 1u);
-    EXPECT_TRUE(needs_compile([&](Look& look) {
+    EXPECT_TRUE(needs_compile([&](Look& look) -> Result<> {
         DARKROOM_TRY(remove_entry(look, "lut#2"));
         return set_file(look, "lut", row->name, "", options);
     }));
