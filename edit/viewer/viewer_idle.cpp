@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // When a frame is drawn: while time runs, while its user does something, and when something else has changed. Else the
 // window keeps the picture that it has.
+#include "panels/widgets/imgui_versions.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
@@ -35,7 +36,7 @@ bool Viewer::is_coming() const {
 bool Viewer::is_due() {
     if (is_fixed()) return true;
     const Clock::time_point now = Clock::now();
-    if (window_->take_news()) busy_until_ = now + after_input;
+    if (window_->take_news() || darkroom::panels::has_input_waiting()) busy_until_ = now + after_input;
     const bool is_changed = screen_.take_change() || drawn_version_ != document_->version();
     drawn_version_ = document_->version();
     if (is_changed) frames_due_ = frames_after_change;

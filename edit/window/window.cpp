@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -17,6 +18,18 @@ std::string last_error() {
     const char* text = nullptr;
     glfwGetError(&text);
     return text != nullptr ? text : "no reason was given";
+}
+
+/// GLFW 3.4 asks for a Wayland display even where none is named, and what it asks prints an error of its own.
+void choose_platform() {
+#ifdef GLFW_PLATFORM
+    const auto is_set = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return value != nullptr && *value != 0;
+    };
+    if (is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") && !is_set("WAYLAND_SOCKET"))
+        glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
 }
 
 /// The library is up as long as this exists.
@@ -73,6 +86,7 @@ Window::~Window() = default;
 
 Result<Window> Window::create(const WindowDesc& desc) {
     auto state = std::make_unique<State>();
+    choose_platform();
     if (glfwInit() != GLFW_TRUE) return machine_error(fmt::format("no window can be opened: {}", last_error()));
     state->library.is_up = true;
     std::uint32_t count = 0;

@@ -4,6 +4,7 @@
 // had numbers of the backend and no queue before 1.87. No other file asks for the version.
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 namespace darkroom::panels {
 
@@ -30,6 +31,7 @@ inline void use_own_keys() {
 inline void send_key(ImGuiKey key, bool is_down) { ImGui::GetIO().KeysDown[key] = is_down; }
 inline void send_control(bool is_down) { ImGui::GetIO().KeyCtrl = is_down; }
 inline void send_alt(bool is_down) { ImGui::GetIO().KeyAlt = is_down; }
+inline bool has_input_waiting() { return false; }
 
 #else
 
@@ -42,6 +44,8 @@ inline void use_own_keys() {}
 inline void send_key(ImGuiKey key, bool is_down) { ImGui::GetIO().AddKeyEvent(key, is_down); }
 inline void send_control(bool is_down) { send_key(ImGuiMod_Ctrl, is_down); }
 inline void send_alt(bool is_down) { send_key(ImGuiMod_Alt, is_down); }
+/// A frame takes as much of what was typed as cannot be mistaken; the rest is for the next ones.
+inline bool has_input_waiting() { return GImGui != nullptr && !GImGui->InputEventsQueue.empty(); }
 
 #endif
 
