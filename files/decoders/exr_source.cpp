@@ -16,6 +16,7 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
@@ -150,6 +151,9 @@ FilePart describe(const OpenPart& part) {
                  .display_width = static_cast<std::uint32_t>(display.max.x - display.min.x + 1),
                  .display_height = static_cast<std::uint32_t>(display.max.y - display.min.y + 1),
                  .is_associated = true};
+    if (const auto* const id = header.findTypedAttribute<Imf::StringAttribute>("colorInteropID"))
+        out.color_space = id->value();
+    out.has_primaries = !out.color_space.empty() || Imf::hasChromaticities(header);
     if (Imf::hasMultiView(header)) out.views = Imf::multiView(header);
     for (const Channel& channel : part.channels) {
         out.channels.push_back(channel.name);

@@ -33,6 +33,8 @@ struct FilePart {
     std::string view;                   ///< of a stereo pair: "left", "right"; else empty
     std::vector<std::string> views;     ///< that share the part; channels of the first have no name of a view
     std::string compression;            ///< "zip", as OpenEXR calls it; else empty
+    std::string color_space;            ///< colorInteropID of OpenEXR; else empty
+    bool has_primaries = false;         ///< OpenEXR says them, by that or by chromaticities
     std::vector<std::string> channels;  ///< by layer; red, green, blue, alpha first, the others by name
     std::vector<SampleKind> kinds;      ///< one per channel
     int x = 0;                          ///< of the data window, relative to the display window

@@ -79,6 +79,7 @@ void take_part(Unpacker& from, FilePart& part) {
     from.take(part.view);
     from.take(part.views, 4, max_names);
     from.take(part.compression);
+    from.take(part.color_space);
     from.take(part.channels, 4, max_channels);
     for (std::size_t i = 0; i < part.channels.size(); ++i) {
         std::uint32_t kind = 0;
@@ -94,10 +95,12 @@ void take_part(Unpacker& from, FilePart& part) {
         from.take(*side);
         from.expect(*side >= 1);
     }
-    std::uint32_t is_associated = 0;
-    from.take(is_associated);
-    from.expect(is_associated <= 1);
-    part.is_associated = is_associated != 0;
+    for (bool* const fact : {&part.is_associated, &part.has_primaries}) {
+        std::uint32_t number = 0;
+        from.take(number);
+        from.expect(number <= 1);
+        *fact = number != 0;
+    }
 }
 
 }  // namespace
@@ -110,12 +113,13 @@ std::vector<std::byte> packed(const PictureDescription& description) {
         to.put(part.view);
         to.put(part.views);
         to.put(part.compression);
+        to.put(part.color_space);
         to.put(part.channels);
         for (const SampleKind kind : part.kinds) to.put(static_cast<std::uint32_t>(kind));
         for (const int place : {part.x, part.y}) to.put(place);
         for (const std::uint32_t side : {part.width, part.height, part.display_width, part.display_height})
             to.put(side);
-        to.put(std::uint32_t{part.is_associated});
+        for (const bool fact : {part.is_associated, part.has_primaries}) to.put(std::uint32_t{fact});
         to.put(row_unit);
         to.put(static_cast<std::uint32_t>(attributes.size()));
         for (const auto& [name, numbers] : attributes) {

@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 
 #include "image/exr/test_exr.hpp"
@@ -163,6 +164,160 @@ TEST_F(CliFrameMeaning, PartsComeBackWithTheirNamesAndAttributes) {
     EXPECT_EQ(load(path("again.exr"))[2].channels, matte.channels);
 }
 
+// ACEScg to Rec. 709 by the matrix that the Academy publishes: 0.8 0.2 0.1 is 1.23136 0.12290 0.07030.
+TEST_F(CliFrameMeaning, ColorInteropIdSaysTheSpaceAndGoesBeforeChromaticities) {
+    const auto light = [&](const std::map<std::string, std::string>& texts) {
+        store(path("in.exr"), {{.channels = {{"R", all(0.8F)}, {"G", all(0.2F)}, {"B", all(0.1F)}}, .texts = texts}});
+        const Result<FrameFile> frame = read_frame(path("in.exr"));
+        EXPECT_TRUE(frame);
+        const float* const pixel = frame->color.at(3, 3);
+        return std::pair(std::array{pixel[0], pixel[1], pixel[2]}, frame->warnings);
+    };
+    const auto near = [](const std::array<float, 3>& a, const std::array<float, 3>& b) {
+        return std::ranges::equal(a, b, [](float x, float y) { return std::abs(x - y) < 1e-4F; });
+    };
+    for (const char* const id : {"lin_ap1_scene", "studio:lin_ap1_scene"}) {
+        const auto [pixel, warnings] = light({{"colorInteropID", id}});
+        EXPECT_TRUE(near(pixel, {1.23136F, 0.12290F, 0.07030F})) << fmt::format("{}", fmt::join(pixel, " "));
+        EXPECT_TRUE(warnings.empty()) << warnings.front();
+    }
+    // IEC 61966-2-1 at 0.8, 0.2 and 0.1.
+    EXPECT_TRUE(near(light({{"colorInteropID", "srgb_rec709_scene"}}).first, {0.603827F, 0.033105F, 0.010023F}));
+    for (const auto& [id, word] : {std::pair("data", "is data"), std::pair("lin_mine_scene", "lin_mine_scene")}) {
+        const auto [pixel, warnings] = light({{"colorInteropID", id}});
+        EXPECT_TRUE(near(pixel, {0.8F, 0.2F, 0.1F})) << id;
+        ASSERT_EQ(warnings.size(), 1U) << id;
+        EXPECT_NE(warnings.front().find(word), std::string::npos) << warnings.front();
+    }
+    EXPECT_TRUE(light({{"colorInteropID", "unknown"}}).second.empty());
+    const Outcome info = run({"info", path("in.exr"), "--json"});
+    EXPECT_NE(info.out.find("says nothing that is known"), std::string::npos) << info.out;
+}
+
+TEST_F(CliFrameMeaning, TristimulusValuesThatSayTheirPrimariesAreAPicture) {
+    // White of D65, by CIE 15.
+    store(path("in.exr"), {{.channels = {{"X", all(0.95047F)}, {"Y", all(1)}, {"Z", all(1.08883F)}},
+                            .texts = {{"colorInteropID", "lin_ciexyzd65_scene"}}}});
+    const Result<FrameFile> frame = read_frame(path("in.exr"));
+    ASSERT_TRUE(frame) << frame.error().text;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(frame->color.at(1, 1)[c], 1, 2e-3) << c;
+    store(path("points.exr"), {{.channels = {{"X", all(1)}, {"Y", all(1)}, {"Z", all(1)}}}});
+    EXPECT_FALSE(read_frame(path("points.exr"))) << "they may be places";
+}
+
+TEST_F(CliFrameMeaning, LayersOfAnotherViewLayerAreLeftOutAndNamed) {
+    std::map<std::string, Samples> channels = rgb(0.5F, "bg.Combined.");
+    channels.merge(rgb(0.25F, "fg.Albedo."));
+    channels["bg.Depth.Z"] = all(4);
+    for (const char* const axis : {"X", "Y", "Z"}) channels[fmt::format("fg.Normal.{}", axis)] = all(0.5F);
+    store(path("in.exr"), {{.channels = channels}});
+    const Result<FrameFile> frame = read_frame(path("in.exr"));
+    ASSERT_TRUE(frame && frame->depth);
+    EXPECT_FALSE(frame->normals);
+    const std::string warnings = fmt::format("{}", fmt::join(frame->warnings, " / "));
+    EXPECT_NE(warnings.find("normals fg.Normal are of another view layer than the color bg.Combined"),
+              std::string::npos)
+        << warnings;
+    EXPECT_TRUE(read_frame(path("in.exr"), {.names = {{"normals", "fg.Normal"}}, .normals_space = NormalsSpace::World})
+                    ->normals);
+}
+
+TEST_F(CliFrameMeaning, TheLengthOfARayIsMadeDepthWhereTheCameraIsKnown) {
+    // A plane at 5 across the axis, seen by 60 degrees: closed form, pixel by pixel; behind its last row is nothing.
+    const double slope = std::tan(std::numbers::pi / 6);
+    Samples rays = all(0);
+    for (int y = 0; y + 1 < frame_height; ++y)
+        for (int x = 0; x < frame_width; ++x) {
+            const double up = (1 - (y + 0.5) / (frame_height / 2.0)) * slope;
+            const double right = ((x + 0.5) / (frame_width / 2.0) - 1) * slope * frame_width / frame_height;
+            rays[static_cast<std::size_t>(y * frame_width + x)] =
+                static_cast<float>(5 * std::sqrt(1 + right * right + up * up));
+        }
+    std::map<std::string, Samples> channels = rgb(0.5F);
+    channels["depth.T"] = rays;
+    store(path("in.exr"), {{.channels = channels}});
+    const Result<FrameFile> blind = read_frame(path("in.exr"));
+    ASSERT_TRUE(blind);
+    EXPECT_FALSE(blind->depth);
+    EXPECT_NE(fmt::format("{}", fmt::join(blind->warnings, " ")).find("length of a ray"), std::string::npos);
+    const Result<FrameFile> frame = read_frame(path("in.exr"), {.vertical_field_of_view = 60});
+    ASSERT_TRUE(frame && frame->depth);
+    const std::size_t seen = std::size_t{frame_width} * (frame_height - 1);
+    for (std::size_t i = 0; i < seen; ++i) ASSERT_NEAR(frame->depth->values[i], 5, 1e-5) << i;
+    EXPECT_EQ(frame->depth->values[seen], sky_depth);
+
+    channels.erase("depth.T");
+    channels["ViewLayer.Denoising Depth.Z"] = rays;
+    store(path("in.exr"), {{.channels = channels}});
+    const Result<FrameFile> denoising = read_frame(path("in.exr"));
+    ASSERT_TRUE(denoising);
+    EXPECT_FALSE(denoising->depth);
+    EXPECT_NE(fmt::format("{}", fmt::join(denoising->warnings, " ")).find("Denoising Depth"), std::string::npos);
+}
+
+TEST_F(CliFrameMeaning, BlendersMotionOfThreeNumbersGoesUpToo) {
+    for (const bool has_fourth : {false, true}) {
+        std::map<std::string, Samples> channels = rgb(0.5F);
+        channels["Vector.X"] = all(3);
+        channels["Vector.Y"] = all(2);
+        channels["Vector.Z"] = all(-3);
+        if (has_fourth) channels["Vector.W"] = all(-2);
+        store(path("in.exr"), {{.channels = channels}});
+        const Result<FrameFile> frame = read_frame(path("in.exr"), {.names = {{"velocity", "Vector"}}});
+        ASSERT_TRUE(frame && frame->velocity);
+        EXPECT_EQ(frame->velocity->values[0], 3);
+        EXPECT_EQ(frame->velocity->values[1], -2) << has_fourth;
+    }
+}
+
+TEST_F(CliFrameMeaning, APackingThatIsNewerThanTheLibraryIsNamed) {
+    store(path("in.exr"), {{.channels = rgb(0.5F)}});
+    const std::string whole = content(path("in.exr"));
+    constexpr std::string_view attribute("compression\0compression\0\1\0\0\0", 28);
+    const std::size_t at = whole.find(attribute);
+    ASSERT_NE(at, std::string::npos);
+    for (const auto& [number, word] :
+         {std::pair(12, "LJ2K, which OpenEXR 3.5 brought"), std::pair(13, "ZSTD, which OpenEXR 3.5 brought"),
+          std::pair(14, "compression 14")}) {
+        std::string changed = whole;
+        changed[at + attribute.size()] = static_cast<char>(number);
+        write("in.exr", changed);
+        const Result<FrameFile> frame = read_frame(path("in.exr"));
+        ASSERT_FALSE(frame);
+        EXPECT_NE(frame.error().text.find(word), std::string::npos) << frame.error().text;
+    }
+}
+
+TEST_F(CliFrameMeaning, APictureSaysItsOwnSpaceAndNothingThatItsFrameClaimed) {
+    const std::map<std::string, std::string> texts{{"colorInteropID", "lin_ap1_scene"},
+                                                   {"ColorSpace", "ACES - ACEScg"},
+                                                   {"cryptomatte/ae5b1f3/name", "object"},
+                                                   {"madeOf", "clay"},
+                                                   {"owner", "the studio"},
+                                                   {"Scene", "street"}};
+    store(path("in.exr"), {{.name = "main", .channels = rgb(0.5F), .texts = texts},
+                           {.name = "albedo", .channels = rgb(0.25F, "albedo."), .texts = texts}});
+    const Outcome alone = develop("in.exr", "out.exr");
+    ASSERT_EQ(alone.code, 0) << alone.err;
+    const auto kept = [&](std::size_t part) {
+        std::map<std::string, std::string> out = load(path("out.exr")).at(part).texts;
+        std::erase_if(out, [&](const auto& text) { return !texts.contains(text.first); });
+        return out;
+    };
+    const std::map<std::string, std::string> of_a_picture{
+        {"colorInteropID", "lin_rec709_scene"}, {"owner", "the studio"}, {"Scene", "street"}};
+    EXPECT_EQ(kept(0), of_a_picture);
+    EXPECT_NE(run({"develop", path("in.exr"), "--look", path("plain.toml"), "-o", path("out.exr")}).err.find("madeOf"),
+              std::string::npos);
+    ASSERT_EQ(develop("in.exr", "out.exr", {"--keep-layers"}).code, 0);
+    EXPECT_EQ(kept(0), of_a_picture);
+    EXPECT_EQ(kept(1), texts) << "its colours are what they were";
+    for (const auto& [space, id] : {std::pair("p3", "lin_p3d65_scene"), std::pair("rec2020", "lin_rec2020_scene")}) {
+        ASSERT_EQ(develop("in.exr", "out.exr", {"--output-space", space}).code, 0);
+        EXPECT_EQ(kept(0)["colorInteropID"], id);
+    }
+}
+
 TEST_F(CliFrameMeaning, KeptLayersStayAsTheyAreUnderEveryCompression) {
     std::map<std::string, Samples> channels = rgb(0.5f);
     for (const char* const name : {"Z", "N.X", "N.Y", "N.Z", "velocity.X", "velocity.Y", "DiffCol.R", "DiffCol.G",
@@ -198,8 +353,8 @@ TEST_F(CliFrameMeaning, EachEyeStaysUnderItsName) {
                               {.name = "depth_right", .view = "right", .channels = {{"Z", all(7)}}}});
     for (const char* const file : {"channels.exr", "parts.exr"}) {
         const std::string in = file;
-        EXPECT_EQ(read_frame(path(in))->warnings, (std::vector<std::string>{
-                                                      "has the views left, right: left is developed, --eye says which"}))
+        EXPECT_EQ(read_frame(path(in))->warnings,
+                  (std::vector<std::string>{"has the views left, right: left is developed, --eye says which"}))
             << "one thing is said once";
         ASSERT_EQ(develop(in, "out.exr", {"--eye", "right", "--keep-layers", "--exposure", "2"}).code, 0);
         const Result<FrameFile> left = read_frame(path("out.exr"), {.view = "left"});

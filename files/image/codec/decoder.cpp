@@ -7,6 +7,7 @@
 
 #include "core/files.hpp"
 #include "decoders/exr_source.hpp"
+#include "image/color/interop_space.hpp"
 #include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
@@ -37,7 +38,32 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max
 }
 
 FileKind Decoder::kind() const { return state_->opened.kind; }
-FileColor Decoder::color() const { return file_color(kind(), state_->bytes); }
+FileColor Decoder::color(std::size_t part) const {
+    const std::vector<float> values = numbers(part, "chromaticities");
+    FileColor out = file_color(kind(), state_->bytes, is_integer(parts()[part].kinds.front()));
+    if (values.size() == 8)
+        out = {.coding = ColorCoding{{.red = {values[0], values[1]},
+                                      .green = {values[2], values[3]},
+                                      .blue = {values[4], values[5]},
+                                      .white = {values[6], values[7]}},
+                                     {}},
+               .said = "chromaticities"};
+    const std::string& id = parts()[part].color_space;
+    if (id.empty()) return out;
+    const std::string shown = one_printable_line(id);
+    const std::optional<InteropSpace> space = find_interop_space(id);
+    if (!space)
+        out.warning = fmt::format("colorInteropID '{}' is no name that is known, and is not obeyed", shown);
+    else if (space->is_data)
+        out = {.warning = "colorInteropID says that its color is data: taken as linear Rec. 709"};
+    else if (!space->is_unknown) {
+        if (out.coding && !is_near(out.coding->primaries, space->coding.primaries))
+            out.warning = fmt::format("colorInteropID '{}' and the chromaticities differ: the first is obeyed", shown);
+        out.coding = space->coding;
+        out.said = "colorInteropID " + shown;
+    }
+    return out;
+}
 std::span<const FilePart> Decoder::parts() const { return state_->opened.source->parts(); }
 
 std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribute) const {
@@ -51,23 +77,14 @@ std::optional<double> Decoder::number(std::size_t part, const std::string& attri
     return values.size() == 1 ? std::optional(values.front()) : std::nullopt;
 }
 
-std::optional<Chromaticities> Decoder::primaries(std::size_t part) const {
-    const std::vector<float> values = numbers(part, "chromaticities");
-    if (values.size() != 8) return std::nullopt;
-    return Chromaticities{.red = {values[0], values[1]},
-                          .green = {values[2], values[3]},
-                          .blue = {values[4], values[5]},
-                          .white = {values[6], values[7]}};
-}
-
 bool Decoder::has_attribute_starting(std::size_t part, std::string_view start) const {
     const std::vector<std::string> names = state_->opened.source->attributes(part);
     return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(start); });
 }
 
-std::shared_ptr<const ExrAttributes> Decoder::attributes(std::size_t part) const {
+std::shared_ptr<const ExrAttributes> Decoder::attributes(std::size_t part, ExrAttributes::Of of) const {
     const auto* const exr = dynamic_cast<const ExrSource*>(state_->opened.source.get());
-    return exr == nullptr ? nullptr : std::make_shared<const ExrAttributes>(exr->header(part));
+    return exr == nullptr ? nullptr : std::make_shared<const ExrAttributes>(exr->header(part), of);
 }
 
 std::uint32_t Decoder::band_rows(std::size_t part, std::size_t row_bytes) const {

@@ -34,19 +34,17 @@ class Decoder {
     ~Decoder();
 
     [[nodiscard]] FileKind kind() const;
-    /// What a file of integers says of its colour.
-    [[nodiscard]] FileColor color() const;
+    /// What the file says of a part's colour. Of OpenEXR colorInteropID, which knows curves, then chromaticities.
+    [[nodiscard]] FileColor color(std::size_t part) const;
     [[nodiscard]] std::span<const FilePart> parts() const;
     /// The numbers of an attribute of a part (one number, a point, a matrix by rows), empty if it has none of that
     /// name, whose case does not matter.
     [[nodiscard]] std::vector<float> numbers(std::size_t part, const std::string& attribute) const;
     /// An attribute that is one number, in all its bits.
     [[nodiscard]] std::optional<double> number(std::size_t part, const std::string& attribute) const;
-    /// What the attribute "chromaticities" of a part says.
-    [[nodiscard]] std::optional<Chromaticities> primaries(std::size_t part) const;
     [[nodiscard]] bool has_attribute_starting(std::size_t part, std::string_view start) const;
     /// What a file that is made from this part may say of itself, too; null for files that are not OpenEXR.
-    [[nodiscard]] std::shared_ptr<const ExrAttributes> attributes(std::size_t part) const;
+    [[nodiscard]] std::shared_ptr<const ExrAttributes> attributes(std::size_t part, ExrAttributes::Of of) const;
 
     /// Hands out channels `first` to `first + count - 1` of the data window from top to bottom: the first row of the
     /// band (0 is the top of the data window), how many rows, and their samples, channel by channel within a pixel.

@@ -58,8 +58,6 @@ double decode_positive(const TransferCurve& curve, double code) {
             return srgb_decode(code);
         case Kind::Power:
             return std::pow(code, curve.exponent);
-        case Kind::Video:
-            return code < 0.081 ? code / 4.5 : std::pow((code + 0.099) / 1.099, 1 / 0.45);
         case Kind::Pq:
             return decode_pq(code);
         case Kind::Hlg:

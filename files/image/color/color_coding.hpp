@@ -17,7 +17,6 @@ struct TransferCurve {
         Linear,
         Srgb,   ///< IEC 61966-2-1
         Power,  ///< light to the power of 1 / exponent
-        Video,  ///< what a camera of ITU-R BT.709-6 does
         Pq,     ///< SMPTE ST 2084, 1 being 203 cd/m2 (ITU-R BT.2408-7)
         Hlg,    ///< ITU-R BT.2100-2, 1 being what becomes 0.75 (ITU-R BT.2408-7)
     };

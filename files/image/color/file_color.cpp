@@ -43,7 +43,8 @@ std::map<std::string_view, Bytes> chunks_of(Bytes file) {
     return out;
 }
 
-/// The numbers of ITU-T H.273 for primaries and curves, as far as pictures have them.
+/// The numbers of ITU-T H.273 for primaries and curves, as far as pictures have them. A picture is shown: those of
+/// cameras (1, 6, 14, 15) stand for the display that they are made for, ITU-R BT.1886.
 std::optional<ColorCoding> coding_of_video(unsigned primaries, unsigned curve) {
     ColorCoding out;
     switch (primaries) {
@@ -58,14 +59,14 @@ std::optional<ColorCoding> coding_of_video(unsigned primaries, unsigned curve) {
         default:
             return std::nullopt;
     }
-    constexpr std::array<std::pair<unsigned, TransferCurve>, 10> curves{{{1, {Kind::Video}},
+    constexpr std::array<std::pair<unsigned, TransferCurve>, 10> curves{{{1, {Kind::Power, 2.4}},
                                                                          {4, {Kind::Power, 2.2}},
                                                                          {5, {Kind::Power, 2.8}},
-                                                                         {6, {Kind::Video}},
+                                                                         {6, {Kind::Power, 2.4}},
                                                                          {8, {Kind::Linear}},
                                                                          {13, {Kind::Srgb}},
-                                                                         {14, {Kind::Video}},
-                                                                         {15, {Kind::Video}},
+                                                                         {14, {Kind::Power, 2.4}},
+                                                                         {15, {Kind::Power, 2.4}},
                                                                          {16, {Kind::Pq}},
                                                                          {18, {Kind::Hlg}}}};
     for (const auto& [number, of] : curves)
@@ -96,15 +97,18 @@ std::optional<Chromaticities> primaries_of(Bytes data) {
     return to_rec709(out) ? std::optional(out) : std::nullopt;
 }
 
-/// Many profiles are those of the two spaces that screens have, and say so. No profile: nothing.
-FileColor color_of_profile(Bytes profile) {
+/// Of a matrix and a curve, or sRGB and Display P3 by their names, since some of them are tables. No profile: nothing.
+FileColor color_of_profile(Bytes profile, bool is_integer = true) {
     if (profile.empty()) return {};
     const std::string name = profile_description(profile);
-    if (name.find("sRGB") != std::string::npos) return {.coding = ColorCoding{}};
-    if (name.find("Display P3") != std::string::npos)
-        return {.coding = ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}};
-    return {.warning = fmt::format("its ICC profile{} is not read: taken as sRGB, --input-space says otherwise",
-                                   name.empty() ? "" : fmt::format(" '{}'", name))};
+    const std::string said = fmt::format("ICC profile '{}'", name);
+    if (const std::optional<ColorCoding> coding = profile_coding(profile)) return {.coding = coding, .said = said};
+    if (is_integer && name.find("sRGB") != std::string::npos) return {.coding = ColorCoding{}, .said = said};
+    if (is_integer && name.find("Display P3") != std::string::npos)
+        return {.coding = ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}, .said = said};
+    return {.warning =
+                fmt::format("its ICC profile{} is not read: taken as {}, --input-space says otherwise",
+                            name.empty() ? "" : fmt::format(" '{}'", name), is_integer ? "sRGB" : "linear Rec. 709")};
 }
 
 /// Of iCCP, unpacked: name, 0, method, deflate. check_png() has seen that it can be.
@@ -124,46 +128,52 @@ std::vector<std::byte> profile_of_png(Bytes chunk) {
     return out;
 }
 
-FileColor png_color(Bytes file) {
-    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
-    const auto chunk = [&](std::string_view type, std::size_t bytes) -> std::optional<Bytes> {
-        const auto found = chunks.find(type);
-        return found == chunks.end() || found->second.size() != bytes ? std::nullopt : std::optional(found->second);
-    };
-    FileColor out;
-    if (const auto data = chunk("cICP", 4)) {
-        const auto number = [&](std::size_t i) { return std::to_integer<unsigned>((*data)[i]); };
-        // A matrix and a limited range belong to video, not to PNG.
-        if (number(2) == 0 && number(3) == 1) out.coding = coding_of_video(number(0), number(1));
-        if (out.coding) return out;
-        out.warning = fmt::format("cICP {} {} {} {} is not read", number(0), number(1), number(2), number(3));
-    }
+/// A chunk of this size.
+std::optional<Bytes> chunk_of(const std::map<std::string_view, Bytes>& chunks, std::string_view type,
+                              std::size_t bytes) {
+    const auto found = chunks.find(type);
+    return found == chunks.end() || found->second.size() != bytes ? std::nullopt : std::optional(found->second);
+}
+
+/// By the chunks behind cICP.
+FileColor color_of_chunks(const std::map<std::string_view, Bytes>& chunks) {
     if (const auto found = chunks.find("iCCP"); found != chunks.end()) {
         const std::vector<std::byte> profile = profile_of_png(found->second);
         if (!profile.empty()) return color_of_profile(profile);
     }
-    if (chunk("sRGB", 1)) {
-        out.coding = ColorCoding{};
-        return out;
-    }
-    const auto gamma = chunk("gAMA", 4), primaries = chunk("cHRM", 32);
-    if (!gamma && !primaries) return out;
-    ColorCoding coding;
+    if (chunk_of(chunks, "sRGB", 1)) return {.coding = ColorCoding{}, .said = "sRGB"};
+    const auto gamma = chunk_of(chunks, "gAMA", 4), primaries = chunk_of(chunks, "cHRM", 32);
+    if (!gamma && !primaries) return {};
+    FileColor out{.coding = ColorCoding{}, .said = gamma && primaries ? "gAMA and cHRM" : gamma ? "gAMA" : "cHRM"};
     if (gamma) {
         const std::optional<TransferCurve> curve = curve_of_gamma(big_endian(*gamma));
         if (curve)
-            coding.curve = *curve;
+            out.coding->curve = *curve;
         else
             out.warning = fmt::format("gAMA {:g} is not read, [0.1, 10] is", big_endian(*gamma) / gamma_unit);
     }
     if (primaries) {
         const std::optional<Chromaticities> found = primaries_of(*primaries);
         if (found)
-            coding.primaries = *found;
+            out.coding->primaries = *found;
         else
             out.warning = "cHRM spans no color space and is not read";
     }
-    out.coding = coding;
+    return out;
+}
+
+FileColor png_color(Bytes file) {
+    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
+    const auto codes = chunk_of(chunks, "cICP", 4);
+    if (!codes) return color_of_chunks(chunks);
+    const auto number = [&](std::size_t i) { return std::to_integer<unsigned>((*codes)[i]); };
+    const std::string said = fmt::format("cICP {} {} {} {}", number(0), number(1), number(2), number(3));
+    // A matrix and a limited range belong to video, not to PNG.
+    if (number(2) == 0 && number(3) == 1)
+        if (const auto coding = coding_of_video(number(0), number(1))) return {.coding = coding, .said = said};
+    FileColor out = color_of_chunks(chunks);
+    if (out.warning.empty())
+        out.warning = fmt::format("{} is not read: taken {}", said, out.said.empty() ? "as sRGB" : "by " + out.said);
     return out;
 }
 
@@ -188,10 +198,10 @@ Bytes profile_of_jpeg(Bytes file) {
 
 }  // namespace
 
-FileColor file_color(FileKind kind, Bytes file) {
+FileColor file_color(FileKind kind, Bytes file, bool is_integer) {
     if (kind == FileKind::Png) return png_color(file);
     if (kind == FileKind::Jpeg) return color_of_profile(profile_of_jpeg(file));
-    if (kind == FileKind::Tiff) return color_of_profile(profile_of_tiff(file));
+    if (kind == FileKind::Tiff) return color_of_profile(profile_of_tiff(file), is_integer);
     if (kind == FileKind::WebP)
         if (const auto picture = check_webp(file)) return color_of_profile(picture->profile);
     return {};

@@ -7,6 +7,7 @@
 #include "image/codec/tiff_check.hpp"
 #include "image/color/file_color.hpp"
 #include "image/color/icc_profile.hpp"
+#include "image/color/interop_space.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
 #include "image/test_bytes.hpp"
@@ -70,13 +71,12 @@ TEST(ImageColor, CurvesHaveTheirPublishedPlaces) {
     using Kind = TransferCurve::Kind;
     EXPECT_NEAR(TransferCurve{Kind::Srgb}.decode(0.5), 0.214041, 1e-6);
     EXPECT_NEAR((TransferCurve{Kind::Power, 2.4}.decode(0.5)), 0.189465, 1e-6);
-    EXPECT_NEAR(TransferCurve{Kind::Video}.decode(0.409), 0.18, 1e-4);
     // ITU-R BT.2408-7: 58.1 % and 75 % are reference white; PQ ends at 10,000 cd/m2.
     EXPECT_NEAR(TransferCurve{Kind::Pq}.decode(0.5807), 1, 1e-3);
     EXPECT_NEAR(TransferCurve{Kind::Pq}.decode(1), 10000.0 / 203, 1e-9);
     EXPECT_NEAR(TransferCurve{Kind::Hlg}.decode(0.75), 1, 1e-12);
     EXPECT_NEAR(TransferCurve{Kind::Hlg}.decode(0.5), 1.0 / 12 / 0.265, 1e-3);
-    for (const Kind kind : {Kind::Linear, Kind::Srgb, Kind::Video, Kind::Pq, Kind::Hlg}) {
+    for (const Kind kind : {Kind::Linear, Kind::Srgb, Kind::Pq, Kind::Hlg}) {
         const TransferCurve curve{kind};
         EXPECT_EQ(curve.decode(0), 0);
         EXPECT_EQ(curve.decode(-0.3), -curve.decode(0.3));
@@ -115,6 +115,9 @@ TEST_F(ImageInputSpace, PngSaysItself) {
     expect_near(color_of(read_frame(png(half, chunk("gAMA", number(55556))))), grey(0.289056F));  // 1 / 1.8
     expect_near(color_of(read_frame(png(green, rec2020))), {-0.58764F, 1.13290F, -0.10058F});
     expect_near(color_of(read_frame(png(half, chunk("cICP", {1, 8, 0, 1})))), grey(0.501961F));
+    // What cameras have stands for the display: ITU-R BT.1886.
+    for (const char curve : {'\1', '\6', '\16', '\17'})
+        expect_near(color_of(read_frame(png(half, chunk("cICP", {1, curve, 0, 1})))), grey(0.191253F));
     // cICP goes before gAMA, and sRGB too.
     expect_near(color_of(read_frame(png(half, linear + chunk("cICP", {1, 13, 0, 1})))), grey(0.215861F));
     expect_near(color_of(read_frame(png(half, linear + chunk("sRGB", std::string(1, 0))))), grey(0.215861F));
@@ -127,7 +130,7 @@ TEST_F(ImageInputSpace, PngSaysItself) {
 TEST_F(ImageInputSpace, WhatIsNotReadIsSaid) {
     const Color white{1, 1, 1};
     EXPECT_EQ(first_warning(png(white, "")), "");
-    EXPECT_EQ(first_warning(png(white, chunk("cICP", {22, 13, 0, 1}))), "cICP 22 13 0 1 is not read");
+    EXPECT_EQ(first_warning(png(white, chunk("cICP", {22, 13, 0, 1}))), "cICP 22 13 0 1 is not read: taken as sRGB");
     EXPECT_EQ(first_warning(png(white, chunk("gAMA", number(1)))), "gAMA 1e-05 is not read, [0.1, 10] is");
     EXPECT_EQ(first_warning(png(white, chunk("cHRM", std::string(32, 0)))),
               "cHRM spans no color space and is not read");
@@ -161,6 +164,107 @@ TEST(ImageIccProfile, SaysItsNameInBothForms) {
         "Adobe RGB\0"s);
     EXPECT_EQ(described(whole), "");
     for (std::size_t size = 0; size < whole.size(); ++size) described(whole.substr(0, size));
+}
+
+/// A profile of three colorants, as ICC prints them for D50, and one curve.
+std::string matrix_profile(const std::array<double, 9>& colorants, const std::string& curve,
+                           const std::string& blue_curve = {}) {
+    const auto number = [](std::int64_t value) {
+        std::string out;
+        for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);
+        return out;
+    };
+    std::string out(128, 0), tags, data;
+    out.replace(16, 8, "RGB XYZ ");
+    out.replace(36, 4, "acsp");
+    const auto add = [&](const std::string& name, std::string tag) {
+        tag.resize((tag.size() + 3) / 4 * 4);
+        tags += name + number(static_cast<std::int64_t>(132 + 12 * 6 + data.size())) +
+                number(static_cast<std::int64_t>(tag.size()));
+        data += tag;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        std::string xyz = "XYZ " + number(0);
+        for (std::size_t k = 0; k < 3; ++k) xyz += number(std::llround(colorants[i * 3 + k] * 65536));
+        add(std::string(1, "rgb"[i]) + "XYZ", xyz);
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+        add(std::string(1, "rgb"[i]) + "TRC", i == 2 && !blue_curve.empty() ? blue_curve : curve);
+    return out + number(6) + tags + data;
+}
+
+TEST(ImageIccProfile, OfAMatrixAndACurveIsRead) {
+    using Kind = TransferCurve::Kind;
+    const auto bytes = [](std::int64_t value, int count) {
+        std::string out;
+        for (int shift = 8 * (count - 1); shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);
+        return out;
+    };
+    const auto coding = [](const std::string& profile) { return profile_coding(std::as_bytes(std::span(profile))); };
+    std::string parametric = "para" + bytes(0, 4) + bytes(3, 2) + bytes(0, 2);
+    for (const double value : {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045})
+        parametric += bytes(std::llround(value * 65536), 4);
+    std::string sampled = "curv" + bytes(0, 4) + bytes(1024, 4);
+    for (int i = 0; i < 1024; ++i)
+        sampled += bytes(std::llround(TransferCurve{Kind::Srgb}.decode(i / 1023.0) * 65535), 2);
+    std::string odd = "curv" + bytes(0, 4) + bytes(3, 4) + bytes(0, 2) + bytes(60000, 2) + bytes(65535, 2);
+    // Of colour.org's and Adobe's own profiles.
+    const std::array<double, 9> p3{0.51512, 0.2412, -0.00105, 0.29198, 0.69225, 0.04189, 0.1571, 0.06657, 0.78407};
+    const std::array<double, 9> srgb{0.43607, 0.22249, 0.01392, 0.38515, 0.71687, 0.09708, 0.14307, 0.06061, 0.7141};
+    const std::array<double, 9> adobe{0.60974, 0.31111, 0.01947, 0.20528, 0.62567, 0.06087, 0.14919, 0.06322, 0.74457};
+    EXPECT_EQ(coding(matrix_profile(p3, parametric)), (ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}));
+    EXPECT_EQ(coding(matrix_profile(srgb, sampled)), ColorCoding{}) << "to the bit, however its numbers are rounded";
+    const std::string gamma = "curv" + bytes(0, 4) + bytes(1, 4) + bytes(563, 2);
+    const auto found = coding(matrix_profile(adobe, gamma));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->curve.exponent, 2.19922, 1e-4);
+    const std::array<double, 9> published{1.39836, -0.39836, 0, 0, 1, 0, 0, -0.04293, 1.04293};
+    const ColorMatrix matrix = *to_rec709(found->primaries);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(matrix[i], published[i], 1e-3) << i;
+    EXPECT_FALSE(coding(matrix_profile(p3, odd))) << "no curve that is known";
+    EXPECT_FALSE(coding(matrix_profile(p3, parametric, gamma))) << "a curve for each channel";
+    const std::string whole = matrix_profile(srgb, sampled);
+    for (std::size_t size = 0; size < whole.size(); size += 7) coding(whole.substr(0, size));
+}
+
+TEST(ImageInteropSpace, NamesOfTheForumAreKnown) {
+    using Kind = TransferCurve::Kind;
+    for (const char* const id : {"lin_ap1_scene",
+                                 "lin_ap0_scene",
+                                 "lin_rec709_scene",
+                                 "lin_p3d65_scene",
+                                 "lin_rec2020_scene",
+                                 "lin_adobergb_scene",
+                                 "lin_ciexyzd65_scene",
+                                 "srgb_rec709_scene",
+                                 "g22_rec709_scene",
+                                 "g18_rec709_scene",
+                                 "srgb_ap1_scene",
+                                 "g22_ap1_scene",
+                                 "srgb_p3d65_scene",
+                                 "g22_adobergb_scene",
+                                 "data",
+                                 "unknown",
+                                 "srgb_rec709_display",
+                                 "g24_rec709_display",
+                                 "srgb_p3d65_display",
+                                 "srgbx_p3d65_display",
+                                 "pq_p3d65_display",
+                                 "pq_rec2020_display",
+                                 "hlg_rec2020_display",
+                                 "g22_rec709_display",
+                                 "g22_adobergb_display",
+                                 "g26_p3d65_display",
+                                 "g26_xyzd65_display",
+                                 "pq_xyzd65_display"})
+        EXPECT_TRUE(find_interop_space(id)) << id;
+    for (const char* const id : {"", "_", "__", "lin", "lin_ap1", "lin_ap1_scenes", "lin__scene", "ap1_lin_scene"})
+        EXPECT_FALSE(find_interop_space(id)) << id;
+    EXPECT_EQ(find_interop_space("studio:srgb_ap1_scene")->coding,
+              (ColorCoding{find_input_space("acescg")->primaries, {Kind::Srgb}}));
+    EXPECT_EQ(interop_id_of({}), "lin_rec709_scene");
+    EXPECT_EQ(interop_id_of(find_input_space("aces2065-1")->primaries), "lin_ap0_scene");
+    EXPECT_EQ(interop_id_of({.red = {0.7, 0.3}}), "");
 }
 
 TEST_F(ImageInputSpace, ProfilesOfJpegAreNamed) {

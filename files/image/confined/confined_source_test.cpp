@@ -80,6 +80,8 @@ void expect_same(const std::filesystem::path& path) {
         EXPECT_EQ(a.view, b.view);
         EXPECT_EQ(a.views, b.views);
         EXPECT_EQ(a.compression, b.compression);
+        EXPECT_EQ(a.color_space, b.color_space);
+        EXPECT_EQ(a.has_primaries, b.has_primaries);
         EXPECT_EQ(a.channels, b.channels);
         EXPECT_EQ(a.kinds, b.kinds);
         EXPECT_EQ(std::tie(a.x, a.y, a.width, a.height), std::tie(b.x, b.y, b.width, b.height));

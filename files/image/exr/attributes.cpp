@@ -8,10 +8,18 @@
 #include <array>
 #include <string_view>
 
+#include "core/text/lower.hpp"
+
 namespace darkroom {
 namespace {
 
-bool is_of_the_file(std::string_view name) {
+template <std::size_t count>
+bool is_one_of(std::string_view name, const std::array<std::string_view, count>& names) {
+    return std::ranges::find(names, name) != names.end();
+}
+
+/// Written anew, or not at all.
+bool is_layout(std::string_view name) {
     constexpr std::array<std::string_view, 19> layout{"channels",
                                                       "compression",
                                                       "dataWindow",
@@ -31,27 +39,68 @@ bool is_of_the_file(std::string_view name) {
                                                       "renderingTransform",
                                                       "dwaCompressionLevel",
                                                       "deepImageState"};
-    return std::ranges::find(layout, name) != layout.end() || name.starts_with("darkroom:light");
+    return is_one_of(name, layout) || name.starts_with("darkroom:light");
+}
+
+bool is_cryptomatte(std::string_view name) { return name.starts_with("cryptomatte/"); }
+
+/// What it says of colours and layers, which a picture says anew.
+bool is_claim(std::string_view name) {
+    constexpr std::array<std::string_view, 5> claims{"acesImageContainerFlag", "colorInteropID", "ColorSpace",
+                                                     "oiio:ColorSpace", "originalImageFlag"};
+    return is_one_of(name, claims) || is_cryptomatte(name);
+}
+
+/// Who made a frame, when, with what, and from where: OpenEXR's standard attributes (ImfStandardAttributes.h of 3.4),
+/// and what renderers, editors and cameras stamp on a frame, whatever its case.
+bool is_of_any_picture(std::string_view name) {
+    constexpr std::string_view names =
+        "|altitude|aperture|artist|ascframingdecisionlist|capdate|capturerate|comments|copyright|date|datetime|"
+        "description|document name|effectivefocallength|entrancepupiloffset|envmap|exposuretime|exptime|file|fnumber|"
+        "focallength|focus|frame|generatedby|frame "
+        "range|framespersecond|host|hostcomputer|hostname|imagecounter|imagedescription|"
+        "isospeed|keycode|latitude|longitude|make|marker|memory|model|nominalfocallength|note|owner|"
+        "pinholefocallength|pixelaspectratio|reelname|rendertime|scene|sequencer strip|shot|show|shutterangle|"
+        "software|take|time|timecode|title|tstop|utcoffset|view|worldtocamera|worldtondc|xdensity|";
+    constexpr std::array<std::string_view, 13> starts{
+        "arnold/", "camera",     "darkroom:",    "exif:",  "gps:",      "iptc:", "lens",
+        "nuke/",   "renderman/", "screenwindow", "sensor", "vrayinfo/", "xmp:"};
+    const std::string lowered = lower(name);
+    if (lowered == "exif:colorspace" || lowered.find('|') != std::string::npos) return false;
+    return names.find("|" + lowered + "|") != std::string_view::npos ||
+           std::ranges::any_of(starts, [&](std::string_view start) { return lowered.starts_with(start); });
+}
+
+/// Adds it unless `header` says it: every header says some, at values that say nothing.
+void add(const char* name, const Imf::Attribute& value, Imf::Header& header) {
+    const std::string_view of = name;
+    const bool is_default = of == "pixelAspectRatio" || of == "screenWindowCenter" || of == "screenWindowWidth";
+    if (is_default || header.find(name) == header.end()) header.insert(name, value);
 }
 
 }  // namespace
 
-ExrAttributes::ExrAttributes(const Imf::Header& header) : kept_(std::make_unique<Imf::Header>()) {
-    for (auto found = header.begin(); found != header.end(); ++found)
-        if (!is_of_the_file(found.name())) kept_->insert(found.name(), found.attribute());
+ExrAttributes::ExrAttributes(const Imf::Header& header, Of of) : kept_(std::make_unique<Imf::Header>()) {
+    for (auto found = header.begin(); found != header.end(); ++found) {
+        const std::string_view name = found.name();
+        if (is_layout(name)) continue;
+        if (of == Of::Layers || is_of_any_picture(name))
+            kept_->insert(found.name(), found.attribute());
+        else if (!is_claim(name))
+            dropped_.emplace_back(name);
+    }
 }
 
 ExrAttributes::~ExrAttributes() = default;
 
 void ExrAttributes::add_to(Imf::Header& header) const {
-    for (auto found = kept_->begin(); found != kept_->end(); ++found) {
-        // Every header has these, at values that say nothing.
-        const std::string_view name = found.name();
-        const bool is_default =
-            name == "pixelAspectRatio" || name == "screenWindowCenter" || name == "screenWindowWidth";
-        if (is_of_the_file(name) || (!is_default && header.find(found.name()) != header.end())) continue;
-        header.insert(found.name(), found.attribute());
-    }
+    for (auto found = kept_->begin(); found != kept_->end(); ++found)
+        if (!is_layout(found.name())) add(found.name(), found.attribute(), header);
+}
+
+void ExrAttributes::add_cryptomatte_to(Imf::Header& header) const {
+    for (auto found = kept_->begin(); found != kept_->end(); ++found)
+        if (is_cryptomatte(found.name())) add(found.name(), found.attribute(), header);
 }
 
 }  // namespace darkroom

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr/check.hpp"
 
+#include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "decoders/file_kind.hpp"
@@ -28,8 +31,36 @@ struct Compression {
     Wide lines;
     Wide largest_ratio;
 };
-constexpr std::array<Compression, 10> compressions{
-    {{1, 1}, {1, 64}, {1, 1100}, {16, 1100}, {32, 512}, {16, 1100}, {32, 11}, {32, 11}, {32, 70000}, {256, 70000}}};
+constexpr std::array<Compression, 12> compressions{{{1, 1},
+                                                    {1, 64},
+                                                    {1, 1100},
+                                                    {16, 1100},
+                                                    {32, 512},
+                                                    {16, 1100},
+                                                    {32, 11},
+                                                    {32, 11},
+                                                    {32, 70000},
+                                                    {256, 70000},
+                                                    {256, 70000},
+                                                    {32, 70000}}};
+
+/// Those that came behind dwab, with the version of OpenEXR that did.
+struct NewerCompression {
+    std::string_view name, version;
+};
+constexpr std::array<NewerCompression, 4> newer_compressions{
+    {{"HTJ2K256", "3.4"}, {"HTJ2K32", "3.4"}, {"LJ2K", "3.5"}, {"ZSTD", "3.5"}}};
+
+Result<> check_compression(std::size_t number) {
+    constexpr std::size_t dwab = 9, known = std::min<std::size_t>(compressions.size(), Imf::NUM_COMPRESSION_METHODS);
+    if (number < known) return {};
+    if (number - dwab - 1 < newer_compressions.size()) {
+        const NewerCompression& newer = newer_compressions[number - dwab - 1];
+        return user_error(fmt::format("is packed by {}, which OpenEXR {} brought; this build has OpenEXR {}",
+                                      newer.name, newer.version, OPENEXR_VERSION_STRING));
+    }
+    return malformed(fmt::format("compression {}, [0, {}] is allowed", number, known - 1));
+}
 
 // A chunk is unpacked in one piece, with its packed bytes and a copy beside it. 4096x4096 pixels of RGBA in floats.
 constexpr Wide largest_chunk = Wide{1} << 28;
@@ -87,8 +118,7 @@ Result<> check_part(CheckedPart& part, bool is_tiled, std::size_t file_size) {
     DARKROOM_TRY(check_window(*part.display, "display window"));
     DARKROOM_TRY(check_window(*part.data, "data window"));
     if (part.channel_count == 0) return user_error("has no channels");
-    if (*part.compression >= compressions.size())
-        return malformed(fmt::format("compression {}, [0, 9] is allowed", *part.compression));
+    DARKROOM_TRY(check_compression(*part.compression));
     const Compression compression = compressions[*part.compression];
 
     const Wide bytes = part.bytes =
@@ -132,7 +162,10 @@ Result<> check_chunks(Reader table, const CheckedPart& part, bool is_tiled, bool
     for (Wide chunk = 0; chunk < part.chunk_count; ++chunk) {
         const auto offset = table.number<std::uint64_t>();
         if (offset == 0)
-            return user_error(fmt::format("unfinished: chunk {} of {} was never written", chunk + 1, part.chunk_count));
+            return user_error(
+                fmt::format("unfinished: its table has no place for chunk {} of {}; a writer that is ended "
+                            "before its time leaves none",
+                            chunk + 1, part.chunk_count));
         if (offset < first_chunk)
             return user_error(fmt::format("chunk {} of {} lies in the header", chunk + 1, part.chunk_count));
         const bool fits = offset <= file.size() && file.size() - offset >= place + 4;

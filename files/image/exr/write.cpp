@@ -11,6 +11,7 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
@@ -22,6 +23,7 @@
 
 #include "core/files.hpp"
 #include "decoders/exr_source.hpp"
+#include "image/color/interop_space.hpp"
 
 namespace darkroom {
 namespace {
@@ -112,14 +114,14 @@ Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_vi
     return header;
 }
 
-void add_chromaticities(Imf::Header& header, const Chromaticities& of) {
+void add_primaries(Imf::Header& header, const Chromaticities& of) {
     const auto point = [](const Chromaticity& c) {
         return Imath::V2f(static_cast<float>(c.x), static_cast<float>(c.y));
     };
     Imf::addChromaticities(header, {point(of.red), point(of.green), point(of.blue), point(of.white)});
+    if (const std::string id = interop_id_of(of); !id.empty())
+        header.insert("colorInteropID", Imf::StringAttribute(id));
 }
-
-void add_rec709(Imf::Header& header) { Imf::addChromaticities(header, Imf::Chromaticities()); }
 
 Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::size_t max_threads) {
     if (max_threads != 1) start_exr_threads();

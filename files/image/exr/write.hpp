@@ -37,8 +37,8 @@ struct ExrPart {
 /// A header of a picture of this size, with Rec. 709 as its chromaticities where it is a picture in colour.
 /// Compression: as OpenEXR calls it, empty: zip.
 [[nodiscard]] Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_view compression = {});
-void add_chromaticities(Imf::Header& header, const Chromaticities& of);
-void add_rec709(Imf::Header& header);
+/// Says of which primaries its light is, by chromaticities and by colorInteropID.
+void add_primaries(Imf::Header& header, const Chromaticities& of);
 
 inline constexpr std::array<std::string_view, 10> exr_compressions{"none",  "rle", "zips", "zip",  "piz",
                                                                    "pxr24", "b44", "b44a", "dwaa", "dwab"};

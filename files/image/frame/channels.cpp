@@ -129,6 +129,7 @@ class Finder {
     [[nodiscard]] const Layer* layer_of(const ChannelSet& channel) const;
     [[nodiscard]] const Layer* find_named_color(FrameChannels& found) const;
     [[nodiscard]] bool is_same_view(const Layer& layer) const;
+    [[nodiscard]] bool is_of_other_view_layer(const Layer& layer) const;
     template <class Accept>
     [[nodiscard]] const Layer* best(const Accept& accept) const;
 
@@ -145,6 +146,7 @@ class Finder {
     std::size_t part_count_ = 0;  // without shadows
     std::vector<Layer> layers_;
     ChannelSet color_;
+    mutable const Layer* passed_over_ = nullptr;  // by the last best(): it would do, and is another view layer's
 };
 
 Failure Finder::unknown(std::string_view what, const std::string& name) const {
@@ -201,12 +203,22 @@ bool Finder::is_same_view(const Layer& layer) const {
     return view_.empty() || layer.view.empty() || view_ == layer.view;
 }
 
+// Blender's Composite is made of view layers; what goes with it may be of any.
+bool Finder::is_of_other_view_layer(const Layer& layer) const {
+    const std::string_view own = parent(color_.prefix), other = parent(layer.name);
+    return !own.empty() && !other.empty() && own != other && last_component(own) != "composite";
+}
+
 // The first layer that is accepted, but one of the colour's own view layer before others.
 template <class Accept>
 const Layer* Finder::best(const Accept& accept) const {
     const Layer* result = nullptr;
     for (const Layer& layer : layers_) {
         if (!is_same_view(layer) || !accept(layer)) continue;
+        if (is_of_other_view_layer(layer)) {
+            passed_over_ = &layer;
+            continue;
+        }
         if (parent(layer.name) == parent(color_.prefix)) return &layer;
         if (result == nullptr) result = &layer;
     }
@@ -235,6 +247,8 @@ const Layer* Finder::find_named_color(FrameChannels& found) const {
                           never = last_gray + 1;
     const auto rank = [&](const Layer& layer) -> std::size_t {
         const bool is_gray = !layer.has("rgb");
+        const bool is_tristimulus = layer.is_plain() && layer.has("xyz") && parts_[layer.part].has_primaries;
+        if (is_gray && is_tristimulus) return plain;
         if (is_gray && !(layer.is_plain() && layer.has("y") && !layer.has("x"))) return never;
         if (part_count_ == 1 && layer.is_plain()) return is_gray ? gray : 0;
         const std::string name = lower(layer.name), last = last_component(layer.name);
@@ -293,8 +307,8 @@ Result<> Finder::find_color(FrameChannels& found) const {
         return layer == layers_.end() ? nullptr : &*layer;
     };
     const Layer* layer = find_named_color(found);
-    if (layer != nullptr && layer->has("rgb")) {
-        found.color = layer->set("rgba");
+    if (layer != nullptr && (layer->has("rgb") || layer->has("xyz"))) {
+        found.color = layer->set(layer->has("rgb") ? "rgba" : "xyza");
         return {};
     }
     if (layer == nullptr && part_count_ == 1)
@@ -326,7 +340,9 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         DARKROOM_TRY_VALUE(found.depth, mapped_set("depth", *name, components));
         return {};
     }
-    const auto is_lone_z = [](const Layer& l) { return l.has("z") && !l.has("x"); };
+    // Along the ray, from the near clip on, filtered, and 3.4e38 where nothing is.
+    const auto is_denoising = [](const Layer& l) { return last_component(l.name) == "denoising depth"; };
+    const auto is_lone_z = [&](const Layer& l) { return l.has("z") && !l.has("x") && !is_denoising(l); };
     const Layer* layer = nullptr;
     if (part_count_ == 1) layer = best([&](const Layer& l) { return l.is_plain() && is_lone_z(l); });
     if (layer == nullptr)
@@ -348,11 +364,17 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         };
         if ((layer = best(names_channel)) == nullptr && (layer = best(is_named)) == nullptr) continue;
         const int channel = names_channel(*layer) ? layer->channel(name) : layer->components.begin()->second;
+        found.is_depth_along_ray = !names_channel(*layer) && layer->channel("t") >= 0;
         found.depth = ChannelSet{layer->part, {channel, -1, -1, -1}, layer->name};
         return {};
     }
     layer = best([](const Layer& l) { return is_of_unreal(l.name) && l.has("r"); });
-    if (layer == nullptr) return {};
+    if (layer == nullptr) {
+        if (std::ranges::any_of(layers_, is_denoising))
+            found.left_out.emplace_back(
+                "Denoising Depth is no distance along the view axis: left out; Blender's pass Z is");
+        return {};
+    }
     found.depth = layer->set("r");
     found.depth_scale = scale_of_depth(layer->name);
     return {};
@@ -381,8 +403,9 @@ Result<> Finder::find_velocity(FrameChannels& found) const {
         constexpr std::array<std::string_view, 3> components{"xy", "uv", "rg"};
         DARKROOM_TRY_VALUE(auto set, mapped_set("velocity", *name, components));
         found.velocity = set;
+        // Its node File Output drops the fourth number.
         found.is_velocity_y_up = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& l) {
-            return l.part == set.part && l.name == set.prefix && is_blender(l);
+            return l.part == set.part && l.name == set.prefix && last_component(l.name) == "vector" && l.has("xyz");
         });
         return {};
     }
@@ -412,9 +435,9 @@ Result<FrameChannels> Finder::find() {
     std::vector<std::string> known;
     std::erase_if(names_, [&](const auto& mapping) {
         const auto& [what, name] = mapping;
-        const bool is_known =
-            name == what && !lone_channel(name) &&
-            std::ranges::none_of(layers_, [&](const Layer& l) { return l.name == name || l.prefix == name; });
+        const bool is_known = name == what && !lone_channel(name) && std::ranges::none_of(layers_, [&](const Layer& l) {
+                                  return l.name == name || l.prefix == name;
+                              });
         if (is_known) known.push_back(name);
         return is_known;
     });
@@ -425,9 +448,19 @@ Result<FrameChannels> Finder::find() {
     for (const Layer& layer : layers_)
         if (view_.empty() && layer.part == color_.part && layer.name == color_.prefix) view_ = layer.view;
     found.view = view_;
+    const auto tell_of_other = [&](std::string_view what, const std::optional<ChannelSet>& set) {
+        if (!set && passed_over_ != nullptr)
+            found.left_out.push_back(fmt::format(
+                "the {0} {1} are of another view layer than the color {2}: left out; --map {0}={1} takes them", what,
+                one_printable_line(passed_over_->name), one_printable_line(color_.prefix)));
+        passed_over_ = nullptr;
+    };
     DARKROOM_TRY(find_depth(found));
+    tell_of_other("depth", found.depth);
     DARKROOM_TRY(find_normals(found));
+    tell_of_other("normals", found.normals);
     DARKROOM_TRY(find_velocity(found));
+    tell_of_other("velocity", found.velocity);
     find_masks(found);
     for (const std::string& what : known)
         if ((what == "depth" && !found.depth) || (what == "normals" && !found.normals) ||

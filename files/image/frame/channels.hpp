@@ -36,10 +36,12 @@ struct FrameChannels {
     std::optional<ChannelSet> reactive;      ///< the first channel only
     std::optional<ChannelSet> transparency;  ///< red, green, blue
     bool is_velocity_y_up = false;           ///< Blender's Vector pass
+    bool is_depth_along_ray = false;         ///< Mitsuba's depth.T: the length of the ray, 0 where nothing is
     float depth_scale = 1;                   ///< metres for each unit, as far as the layer's name tells
     std::vector<std::string> views;          ///< of a stereo picture, if there are several
     std::string view;                        ///< that the colour is of; may be empty
     std::vector<std::string> other_colors;   ///< layers that might as well be the colour, where no name decided
+    std::vector<std::string> left_out;       ///< of layers that look like one of these: why they are not, in a sentence
 };
 
 /// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the

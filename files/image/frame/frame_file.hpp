@@ -129,6 +129,7 @@ struct FrameFile {
     std::optional<float> exposure;             ///< what light is multiplied by before it is shown; above 0
     std::optional<std::uint64_t> frame_index;  ///< at most 2^53
     FileKind kind = FileKind::OpenExr;
+    std::string color_said;                 ///< by what the file says which colours it has; empty: it does not
     SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
     PixelCounts counts;
     std::vector<std::string> warnings;                ///< one line each, without the file name

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -44,6 +45,7 @@ class FrameReader {
     Result<> make_masks();
     void finish_color();
     void finish_depth();
+    void make_depth_planar();
     void finish_normals();
     void finish_velocity();
     void finish_masks();
@@ -114,21 +116,16 @@ ColorCoding FrameReader::coding_of_color() {
     if (options_.input_chain) return {.curve = {}};
     if (const std::optional<InputSpace>& space = options_.input_space)
         return {space->primaries, is_integer() ? space->integers : space->floats};
-    if (is_integer()) {
-        const FileColor color = decoder_.color();
-        if (!color.warning.empty()) frame_.warnings.push_back(color.warning);
-        return color.coding.value_or(ColorCoding{});
-    }
-    ColorCoding coding{.curve = {}};
-    if (const std::optional<Chromaticities> primaries = decoder_.primaries(found_.color.part)) {
-        coding.primaries = *primaries;
-        return coding;
-    }
+    const FileColor color = decoder_.color(found_.color.part);
+    if (!color.warning.empty()) frame_.warnings.push_back(color.warning);
+    frame_.color_said = color.said;
+    if (color.coding) return *color.coding;
+    if (is_integer()) return {};
     const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
     if (red.ends_with("X") || red.ends_with("x"))
         frame_.warnings.emplace_back(
             "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
-    return coding;
+    return {.curve = {}};
 }
 
 void FrameReader::find_conversion() {
@@ -235,9 +232,10 @@ void FrameReader::finish_depth() {
     bool has_negative = false, has_positive = false;
     for (float& value : values) {
         if (!std::isfinite(value) || value >= 1e9f) continue;
-        zeros += value == 0;
+        zeros += value == 0 && !found_.is_depth_along_ray;
         has_negative |= value < 0;
         has_positive |= value > 0;
+        if (found_.is_depth_along_ray && value == 0) value = sky_depth;
         if (options_.is_depth_inverse) value = value == 0 ? sky_depth : 1 / value;
         if (value < 1e9f) value *= scale;
     }
@@ -256,6 +254,31 @@ void FrameReader::finish_depth() {
         frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();
         distance = sky_depth;
     }
+}
+
+// The length of a ray to its distance along the view axis, which the camera tells.
+void FrameReader::make_depth_planar() {
+    if (!frame_.depth || !found_.is_depth_along_ray) return;
+    const std::optional<Matrix>& projection = frame_.camera.projection;
+    const bool is_perspective = projection && (*projection)[11] != 0 && (*projection)[0] != 0 && (*projection)[5] != 0;
+    if (!is_perspective) {
+        frame_.warnings.push_back(
+            fmt::format("{}.T is the length of a ray, and no camera is known that makes it depth: "
+                        "left out; --fov or --camera tells one",
+                        one_printable_line(found_.depth->prefix)));
+        frame_.depth.reset();
+        return;
+    }
+    const Matrix& p = *projection;
+    const std::uint32_t width = frame_.color.width, height = frame_.color.height;
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            float& value = frame_.depth->values[std::size_t{y} * width + x];
+            if (value >= 1e9F) continue;
+            const double right = ((2 * x + 1.0) / width - 1 + double{p[8]}) / double{p[0]};
+            const double up = ((2 * y + 1.0) / height - 1 + double{p[9]}) / double{p[5]};
+            value = static_cast<float>(value / std::sqrt(1 + right * right + up * up));
+        }
 }
 
 // V-Ray writes normals in the space of its camera (x right, y down, z forward), others in that of the world.
@@ -456,8 +479,9 @@ Result<FrameFile> FrameReader::read() {
                         : found_.is_gray             ? "Y"
                                                      : "R, G, B",
                         one_printable_line(fmt::format("{}", fmt::join(found_.other_colors, ", ")))));
+    std::ranges::copy(found_.left_out, std::back_inserter(frame_.warnings));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
-    frame_.attributes = decoder_.attributes(found_.color.part);
+    frame_.attributes = decoder_.attributes(found_.color.part, ExrAttributes::Of::Picture);
     if (options_.keeps_overscan) DARKROOM_TRY(keep_overscan());
     DARKROOM_TRY(make_color());
     DARKROOM_TRY(make_depth());
@@ -471,6 +495,7 @@ Result<FrameFile> FrameReader::read() {
     finish_velocity();
     finish_masks();
     DARKROOM_TRY(read_camera_of_file());
+    make_depth_planar();
     settle_world(frame_, options_, vray_normals_.has_value());
     read_time_of_file();
     DARKROOM_TRY(read_lights(decoder_, found_.color.part, options_, frame_));

@@ -66,7 +66,7 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, 
         add({"transparency.R", "transparency.G", "transparency.B"}, color, frame.transparency->values, 3);
 
     Imf::Header& header = part.header;
-    add_rec709(header);
+    add_primaries(header, {});
     add_matrix(header, "worldToCamera", frame.camera.world_to_camera);
     add_matrix(header, "darkroom:projection", frame.camera.projection);
     add_matrix(header, "darkroom:previousWorldToCamera", frame.camera.previous_world_to_camera);

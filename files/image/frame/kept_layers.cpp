@@ -72,7 +72,7 @@ class Reader {
                               .window = is_of_color ? PixelWindow{0, 0, layers_.width, layers_.height}
                                                     : PixelWindow{part.x, part.y, part.width, part.height},
                               .views = part.views,
-                              .attributes = decoder_.attributes(number)};
+                              .attributes = decoder_.attributes(number, ExrAttributes::Of::Layers)};
         if (is_of_color) layers_.color_part = layers_.parts.size();
         std::vector<std::optional<std::size_t>> places(part.channels.size());
         for (std::size_t c = 0; c < part.channels.size(); ++c) {
@@ -150,7 +150,7 @@ Result<KeptLayers> read_kept_layers(const std::filesystem::path& path, const Fra
     };
     if (std::ranges::any_of(layers.parts,
                             [&](const KeptLayers::Part& part) { return std::ranges::any_of(part.channels, is_red); }))
-        layers.primaries = decoder.primaries(found->color.part);
+        if (const auto coding = decoder.color(found->color.part).coding) layers.primaries = coding->primaries;
     return layers;
 }
 

@@ -39,9 +39,10 @@ Result<ComparablePicture> read_comparable(LayerFile& file) {
     const SampleKind kind = part.kinds[layer.channels.front()];
     if (kind != SampleKind::Half && kind != SampleKind::Float) return out;
     out.encoding = PictureEncoding::SceneLinear;
-    const std::optional<Chromaticities> primaries = file.decoder().primaries(layer.part);
-    if (!primaries || samples.channels < 3) return out;
-    const std::optional<ColorMatrix> matrix = to_rec709(*primaries);
+    const std::optional<ColorCoding> coding = file.decoder().color(layer.part).coding;
+    if (!coding || samples.channels < 3) return out;
+    decode(out.picture, kind, coding->curve);
+    const std::optional<ColorMatrix> matrix = to_rec709(coding->primaries);
     if (matrix && *matrix != ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) convert(out.picture, *matrix);
     return out;
 }

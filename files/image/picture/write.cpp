@@ -235,6 +235,7 @@ Result<std::vector<ExrPart>> with_layers(const std::filesystem::path& path, cons
         ExrPart* to = nullptr;
         if (i == layers.color_part) {
             if (!kept.views.empty()) Imf::addMultiView(part.header, kept.views);
+            if (kept.attributes && !kept.channels.empty()) kept.attributes->add_cryptomatte_to(part.header);
             to = &out.emplace_back(part);
             to->header.setName(kept.name.empty() ? "picture" : kept.name);
         }
@@ -264,10 +265,8 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
         part.header.displayWindow() = {{0, 0}, size - Imath::V2i(1)};
     }
     const std::optional<ColorState> color = color_of(options, samples);
-    if (color && color->primaries != Primaries::Rec709)
-        add_chromaticities(part.header, chromaticities_of(color->primaries));
-    else
-        add_rec709(part.header);
+    // What a view makes of light has no name.
+    if (options.view == nullptr) add_primaries(part.header, color ? chromaticities_of(color->primaries) : Chromaticities{});
     if (options.attributes) options.attributes->add_to(part.header);
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)

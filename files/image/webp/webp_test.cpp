@@ -172,7 +172,7 @@ TEST_F(ImageWebpFile, ItsProfileSaysWhichColorsTheyAre) {
     // A profile of no name is not read, which is told.
     const std::string text = riff(chunk_of("VP8X", std::string("\x30\0\0\0\x13\0\0\x09\0\0", 10)) +
                                   chunk_of("ICCP", std::string(200, 'x')) + picture);
-    const FileColor color = file_color(FileKind::WebP, std::as_bytes(std::span(text)));
+    const FileColor color = file_color(FileKind::WebP, std::as_bytes(std::span(text)), true);
     EXPECT_FALSE(color.coding);
     EXPECT_TRUE(color.warning.starts_with("its ICC profile is not read")) << color.warning;
     EXPECT_TRUE(open_source(std::as_bytes(std::span(text))));

@@ -37,7 +37,9 @@ void LookReader::read_top(const toml::table& file) {
     const toml::node* const format = file.get("format");
     if (format == nullptr) return;
     const auto* const number = format->as_integer();
-    if (number == nullptr || number->get() != Look::format)
+    if (number == nullptr)
+        report(*format, Weight::Wrong, fmt::format("format is no whole number: format = {} is", Look::format));
+    else if (number->get() != Look::format)
         report(*format, Weight::Wrong,
                fmt::format("format = {}: this build reads format {}", show(*format), Look::format));
 }

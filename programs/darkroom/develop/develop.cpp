@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -97,6 +98,16 @@ struct Job {
 darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
     return user_error(
         fmt::format("--keep-layers: {} holds no layers; .exr does", darkroom::printable(output.string())));
+}
+
+/// What of an OpenEXR frame's attributes a picture in OpenEXR does not repeat.
+void tell_of_dropped(const darkroom::FrameFile& frame, const std::filesystem::path& output, std::string_view shown) {
+    const darkroom::Result<darkroom::FileKind> kind = darkroom::file_kind(output);
+    if (!kind || *kind != darkroom::FileKind::OpenExr || !frame.attributes || frame.attributes->dropped().empty())
+        return;
+    const std::string names = fmt::format("{}", fmt::join(frame.attributes->dropped(), ", "));
+    warn(fmt::format("{}: its {} may not be true of a picture made of it, and is left out", shown,
+                     darkroom::one_printable_line(names)));
 }
 
 /// How many frames that are asked for are missing before each picture, and behind the last. Those that stand in another
@@ -364,7 +375,10 @@ class Develop {
     Result<> begin(std::size_t i) {
         Item& item = items_[i];
         for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
-        if (i == 0) tell_of_assumed_view(item.frame, shown(i));
+        if (i == 0) {
+            tell_of_assumed_view(item.frame, shown(i));
+            tell_of_dropped(item.frame, job_.steps[i].output, shown(i));
+        }
         item.input.camera.is_cut = !follows(job_.steps[i]);
         next_place_ = job_.steps[i].place + 1;
         DARKROOM_TRY(motion_.advance(*composer_, job_.steps[i].place, item.input.time));

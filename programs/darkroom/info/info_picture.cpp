@@ -183,6 +183,9 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
     if (frame->time) out["time"] = json_number(*frame->time);
     if (frame->delta_time) out["delta_time"] = json_number(*frame->delta_time);
     if (frame->frame_index) out["frame_index"] = *frame->frame_index;
+    out["color"] = !frame->color_said.empty()             ? "by " + frame->color_said
+                   : darkroom::is_integer(frame->samples) ? "sRGB, the file says nothing that is known"
+                                                          : "linear Rec. 709, the file says nothing that is known";
     if (!frame->lights.empty()) out["lights"] = lights_of(frame->lights);
     if (!frame->warnings.empty()) out["warnings"] = frame->warnings;
     add_mistakes(*frame, out);
