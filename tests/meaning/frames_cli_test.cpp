@@ -218,7 +218,7 @@ TEST_F(CliFrameMeaning, LayersOfAnotherViewLayerAreLeftOutAndNamed) {
     EXPECT_NE(warnings.find("normals fg.Normal are of another view layer than the color bg.Combined"),
               std::string::npos)
         << warnings;
-    EXPECT_TRUE(read_frame(path("in.exr"), {.names = {{"normals", "fg.Normal"}}, .normals_space = NormalsSpace::World})
+    EXPECT_TRUE(read_frame(path("in.exr"), {.names = {{"normals", "fg.Normal"}}, .normals_space = NormalsSpace::View})
                     ->normals);
 }
 
