@@ -46,8 +46,9 @@ bool is_cryptomatte(std::string_view name) { return name.starts_with("cryptomatt
 
 /// What it says of colours and layers, which a picture says anew.
 bool is_claim(std::string_view name) {
-    constexpr std::array<std::string_view, 5> claims{"acesImageContainerFlag", "colorInteropID", "ColorSpace",
-                                                     "oiio:ColorSpace", "originalImageFlag"};
+    constexpr std::array<std::string_view, 6> claims{"acesImageContainerFlag", "BlenderMultiChannel",
+                                                     "colorInteropID",         "ColorSpace",
+                                                     "oiio:ColorSpace",        "originalImageFlag"};
     return is_one_of(name, claims) || is_cryptomatte(name);
 }
 
@@ -62,9 +63,9 @@ bool is_of_any_picture(std::string_view name) {
         "isospeed|keycode|latitude|longitude|make|marker|memory|model|nominalfocallength|note|owner|"
         "pinholefocallength|pixelaspectratio|reelname|rendertime|scene|sequencer strip|shot|show|shutterangle|"
         "software|take|time|timecode|title|tstop|utcoffset|view|worldtocamera|worldtondc|xdensity|";
-    constexpr std::array<std::string_view, 13> starts{
-        "arnold/", "camera",     "darkroom:",    "exif:",  "gps:",      "iptc:", "lens",
-        "nuke/",   "renderman/", "screenwindow", "sensor", "vrayinfo/", "xmp:"};
+    constexpr std::array<std::string_view, 14> starts{"cycles.",      "arnold/", "camera",    "darkroom:", "exif:",
+                                                      "gps:",         "iptc:",   "lens",      "nuke/",     "renderman/",
+                                                      "screenwindow", "sensor",  "vrayinfo/", "xmp:"};
     const std::string lowered = lower(name);
     if (lowered == "exif:colorspace" || lowered.find('|') != std::string::npos) return false;
     return names.find("|" + lowered + "|") != std::string_view::npos ||
