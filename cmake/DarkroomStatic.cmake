@@ -20,6 +20,10 @@ get_target_property(type darkroom_fmt TYPE)
 if(type STREQUAL STATIC_LIBRARY)
   list(APPEND libraries $<TARGET_FILE:darkroom_fmt>)
 endif()
+set(inner "")
+foreach(name ${DARKROOM_INNER})
+  list(APPEND inner "!_Z*N8darkroom${name}*" "!_Z*NK8darkroom${name}*")
+endforeach()
 # darkroom_archive(TARGET OUTPUT FILE EXPORT NAME OURS REGEX KEEP PATTERN... PARTS FOLDER...): KEEP are the symbols that stay
 # global, OURS matches them as well.
 # Groups are dissolved: the linker would throw a group away where the host has one of the same name, and with it code
@@ -41,7 +45,7 @@ function(darkroom_archive target)
     COMMAND ${DARKROOM_GNU_LINKER} -r --force-group-allocation -o ${whole} ${objects} --start-group ${libraries} --end-group
     COMMAND ${CMAKE_OBJCOPY} --wildcard ${keep} ${whole}
     COMMAND sh -c "${CMAKE_NM} --defined-only ${whole} |\
- awk '$2 == \"u\" && $3 !~ /${archive_OURS}/ { print $3, \"${target}.\" $3 }' >${whole}.unique"
+ awk '$2 == \"u\" && ($3 !~ /${archive_OURS}/ || $3 ~ /^_Z(GV)?Z*NK?8darkroom(${DARKROOM_INNER_REGEX})/) { print $3, \"${target}.\" $3 }' >${whole}.unique"
     COMMAND ${CMAKE_OBJCOPY} --redefine-syms ${whole}.unique ${whole}
     DEPENDS ${objects} ${libraries} COMMENT "Linking ${target}.o")
   set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
@@ -55,7 +59,7 @@ function(darkroom_archive target)
 endfunction()
 
 darkroom_archive(darkroom_static OUTPUT darkroom EXPORT static OURS "^_Z(GV)?Z*NK?8darkroom" PARTS ${DARKROOM_PARTS}
-  KEEP "_ZN8darkroom*" "_ZNK8darkroom*" "_ZZN8darkroom*" "_ZZNK8darkroom*" "_ZT?N8darkroom*" "_ZGV*N8darkroom*")
+  KEEP "_ZN8darkroom*" "_ZNK8darkroom*" "_ZZN8darkroom*" "_ZZNK8darkroom*" "_ZT?N8darkroom*" "_ZGV*N8darkroom*" ${inner})
 set_target_properties(darkroom_static PROPERTIES LINKER_LANGUAGE CXX)
 target_link_libraries(darkroom_static INTERFACE ${DARKROOM_EXPECTED})
 target_compile_features(darkroom_static INTERFACE cxx_std_20)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project and no others, libdarkroom.so
-# those of the C interface and no others, and a shared object needs the C++ runtime and our other libraries alone; that of scripts needs Lua, too.
+# symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project's interface and no others,
+# libdarkroom.so those of the C interface and no others, and a shared object needs the C++ runtime and our other libraries
+# alone; that of scripts needs Lua, too.
 set -euo pipefail
 for library in "$@"; do
     # What is dynamic of an archive is what is global in it.
@@ -15,6 +16,11 @@ for library in "$@"; do
     foreign=$(grep -vE "^($ours)" <<<"$exported" | c++filt || true)
     if [[ -n $foreign ]]; then
         printf '%s exports what is not ours:\n%s\n' "$library" "$foreign"
+        exit 1
+    fi
+    inner=$(grep -E '^_Z(T[VTIS]|GV)?Z*NK?8darkroom(3gpu|4plan|5graph|6custom|7compose)' <<<"$exported" | c++filt || true)
+    if [[ -n $inner ]]; then
+        printf '%s exports what no public header asks for:\n%s\n' "$library" "$inner"
         exit 1
     fi
     grep -q "^$one" <<<"$exported" || { echo "$library exports nothing of ours" && exit 1; }
