@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Unsaved edits of a look, kept in a file beside it while they are not saved, so that a program that ends without being
-// asked loses none. Its first line names the process that writes it.
+// asked loses none. Who writes it holds a lock on it. Several windows over one look have one each.
 
 #include <chrono>
 #include <filesystem>
@@ -17,26 +17,36 @@ class Journal {
     /// `folder`: of looks that have no file yet; empty: these have no journal.
     explicit Journal(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+    Journal(const Journal&) = delete;
+    Journal& operator=(const Journal&) = delete;
+    ~Journal();
+
     /// What a former process has left of this look, and nobody writes any more: as LookDocument::take_unsaved reads it.
-    /// Nothing is written before begin().
+    /// It stays where it is, and is offered again at the next time, until it is settled.
     [[nodiscard]] std::optional<std::string> left_behind(const darkroom::edit::LookDocument& document);
-    /// It is dealt with: from now on the file is ours, and edits are written.
-    void begin(const darkroom::edit::LookDocument& document);
+    /// That was taken, or is not wanted.
+    void settle() { remove(offered_); }
     /// Once a frame: what is not saved is in the file within a second or two, and where all is saved there is none.
-    /// Errors, as long as they last: the file cannot be written, or is another window's.
+    /// Errors, as long as they last: the file cannot be written.
     [[nodiscard]] darkroom::Result<> follow(const darkroom::edit::LookDocument& document);
     /// Of who leaves and means it.
     void end();
 
   private:
     using Clock = std::chrono::steady_clock;
+    struct Held {
+        std::filesystem::path file;
+        int lock = -1;  ///< none: there is no file
+    };
+    /// Empty: there is none.
+    [[nodiscard]] std::filesystem::path file_of(const darkroom::edit::LookDocument& document, int number) const;
+    static void remove(Held& held);
     [[nodiscard]] darkroom::Result<> keep(const darkroom::edit::LookDocument& document);
-    [[nodiscard]] std::filesystem::path file_of(const darkroom::edit::LookDocument& document) const;
 
-    std::filesystem::path folder_, written_;  ///< written_: the file that is there, ours
-    std::uint64_t version_ = 0;               ///< of the document, in it
+    std::filesystem::path folder_, of_;  ///< of_: the look's
+    Held written_, offered_;
+    std::uint64_t version_ = ~std::uint64_t{0};  ///< of the document, in the file
     Clock::time_point looked_at_{};
-    bool is_held_ = false, has_failed_ = false;
     darkroom::Result<> state_;
 };
 

@@ -126,12 +126,13 @@ void Viewer::offer_unsaved() {
     if (!text) return;
     const std::string name = document_->file().empty() ? "a look without a name" : shown(document_->file().filename());
     const auto take = [this, text = *text] {
-        journal_->begin(*document_);
-        settle("unsaved edits", document_->take_unsaved(text));
+        const Result<> taken = document_->take_unsaved(text);
+        settle("unsaved edits", taken);
+        if (taken) journal_->settle();
     };
     screen_.editor()->look().ask(
         fmt::format("The window closed before the edits of {} were saved. They are still there.", name),
-        {{"Take them", take}, {"Throw them away", [this] { journal_->begin(*document_); }}});
+        {{"Take them", take}, {"Throw them away", [this] { journal_->settle(); }}});
     tell(fmt::format("unsaved edits of {} are there", name));
 }
 
