@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -101,6 +102,25 @@ Bytes compressed(const PngDesc& desc) {
     return other.size() < out.size() ? other : out;
 }
 
+// PNG, third edition, 11.3.2.7 and 11.3.2.8.
+void put_light(Bytes& out, const PngDesc::Light& light) {
+    const auto nits = [](double value) { return static_cast<std::uint32_t>(std::lround(value * 10000)); };
+    Bytes display, content;
+    const auto& [red, green, blue, white] = light.primaries;
+    for (const Chromaticity& point : {red, green, blue, white})
+        for (const double value : {point.x, point.y}) {
+            const auto number = static_cast<std::uint16_t>(std::lround(value * 50000));
+            display.push_back(static_cast<std::byte>(number >> 8));
+            display.push_back(static_cast<std::byte>(number & 0xff));
+        }
+    put_number(display, nits(light.display_peak));
+    put_number(display, 1);
+    put_number(content, nits(light.max));
+    put_number(content, nits(light.mean));
+    put_chunk(out, "mDCV", display);
+    put_chunk(out, "cLLI", content);
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_png(const PngDesc& desc) {
@@ -119,6 +139,7 @@ Result<std::vector<std::byte>> encode_png(const PngDesc& desc) {
         put_chunk(out, "cICP", std::array{std::byte{(*codes)[0]}, std::byte{(*codes)[1]}, std::byte{0}, std::byte{1}});
     else if (desc.is_srgb)
         put_chunk(out, "sRGB", std::array{std::byte{0}});  // rendering intent: perceptual
+    if (desc.light) put_light(out, *desc.light);
     const Bytes data = compressed(desc);
     // A chunk has at most 2^31 - 1 bytes.
     constexpr std::size_t longest = std::size_t{1} << 30;

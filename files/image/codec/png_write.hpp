@@ -11,6 +11,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/primaries.hpp"
+
 namespace darkroom {
 
 struct PngDesc {
@@ -21,6 +23,13 @@ struct PngDesc {
     bool is_srgb = true;            ///< false: the file says nothing of its colour, but for what comes next
     /// Primaries and curve by ITU-T H.273, in place of sRGB.
     std::optional<std::array<std::uint8_t, 2>> video_codes{};
+    /// Of PQ, in cd/m2: the display that it is made for, the brightest component of a pixel, and the mean of each pixel's
+    /// brightest (CTA-861.3, MaxCLL and MaxFALL). Without them browsers take the brightest that PQ holds for the picture's.
+    struct Light {
+        Chromaticities primaries;
+        double display_peak = 0, max = 0, mean = 0;
+    };
+    std::optional<Light> light{};
     std::optional<int> level;  ///< of libdeflate, 0 to 12; not given: fast, and better where that costs little
 };
 

@@ -162,6 +162,14 @@ FileColor color_of_chunks(const std::map<std::string_view, Bytes>& chunks) {
     return out;
 }
 
+/// Content light levels (11.3.2.8), which change no number.
+std::string light_of(const std::map<std::string_view, Bytes>& chunks) {
+    const auto levels = chunk_of(chunks, "cLLI", 8);
+    if (!levels) return {};
+    return fmt::format(", light up to {:.6g} cd/m2, {:.6g} in the mean", big_endian(*levels) / 1e4,
+                       big_endian(levels->subspan(4)) / 1e4);
+}
+
 FileColor png_color(Bytes file) {
     const std::map<std::string_view, Bytes> chunks = chunks_of(file);
     const auto codes = chunk_of(chunks, "cICP", 4);
@@ -170,7 +178,8 @@ FileColor png_color(Bytes file) {
     const std::string said = fmt::format("cICP {} {} {} {}", number(0), number(1), number(2), number(3));
     // A matrix and a limited range belong to video, not to PNG.
     if (number(2) == 0 && number(3) == 1)
-        if (const auto coding = coding_of_video(number(0), number(1))) return {.coding = coding, .said = said};
+        if (const auto coding = coding_of_video(number(0), number(1)))
+            return {.coding = coding, .said = said + light_of(chunks)};
     FileColor out = color_of_chunks(chunks);
     if (out.warning.empty())
         out.warning = fmt::format("{} is not read: taken {}", said, out.said.empty() ? "as sRGB" : "by " + out.said);

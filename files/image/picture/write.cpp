@@ -19,6 +19,7 @@
 #include "core/text/lower.hpp"
 #include "image/codec/codecs.hpp"
 #include "image/codec/png_write.hpp"
+#include "image/color/color_coding.hpp"
 #include "image/exr/write.hpp"
 #include "image/picture/alpha.hpp"
 
@@ -130,6 +131,9 @@ Result<> check_space(const std::filesystem::path& path, FileKind kind, SampleKin
     if (kind != FileKind::Png && kind != FileKind::OpenExr && name != "srgb")
         return user_error(
             fmt::format("{}: {} cannot be marked as {}; .png .exr can", path.string(), name_of(kind), name));
+    if (samples == SampleKind::Integer8 && (name == "pq" || name == "hlg"))
+        return user_error(fmt::format("{}: {} in 8 bits shows steps (ITU-R BT.2100 asks for 10); --bits 16 is allowed",
+                                      path.string(), name));
     if (color_of(options, samples)) return {};
     return user_error(fmt::format("{}: {} in {} samples; allowed: {}", path.string(), name, name_of(samples),
                                   output_space_names_of(is_integer(samples))));
@@ -174,6 +178,30 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
 
 namespace {
 
+/// Of codes of PQ.
+template <class Code>
+PngDesc::Light light_of(const EncodeDesc& desc, const ColorState& color) {
+    constexpr std::size_t last = std::numeric_limits<Code>::max();
+    const TransferCurve pq{TransferCurve::Kind::Pq};
+    std::vector<double> nits(last + 1);
+    for (std::size_t code = 0; code <= last; ++code)
+        nits[code] = pq.decode(static_cast<double>(code) / last) * double{color.white_nits};
+    const auto* const samples = static_cast<const Code*>(desc.samples);
+    const std::size_t pixels = std::size_t{desc.width} * desc.height;
+    Code brightest = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const Code* const pixel = samples + i * desc.channels;
+        const Code own = std::max({pixel[0], pixel[1], pixel[2]});
+        brightest = std::max(brightest, own);
+        sum += nits[own];
+    }
+    return {.primaries = chromaticities_of(color.primaries),
+            .display_peak = double{color.peak_nits},
+            .max = nits[brightest],
+            .mean = sum / static_cast<double>(pixels)};
+}
+
 /// Samples of 8 or 16 bits, or floats, into any kind of file but OpenEXR.
 Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc, const WriteOptions& options) {
     const auto encode = [&]() -> Result<std::vector<std::byte>> {
@@ -186,6 +214,9 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
                         .is_srgb = options.view == nullptr};
             if (const auto color = color_of(options, desc.kind); color && *color != srgb_color)
                 png.video_codes = video_codes_of(*color);
+            if (const auto color = color_of(options, desc.kind); color && color->transfer == Transfer::Pq)
+                png.light = desc.kind == SampleKind::Integer8 ? light_of<std::uint8_t>(desc, *color)
+                                                              : light_of<std::uint16_t>(desc, *color);
             if (!options.compression.empty()) png.level = std::stoi(options.compression);
             return encode_png(png);
         }
@@ -265,8 +296,7 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
         part.header.displayWindow() = {{0, 0}, size - Imath::V2i(1)};
     }
     const std::optional<ColorState> color = color_of(options, samples);
-    // What a view makes of light has no name.
-    if (options.view == nullptr) add_primaries(part.header, color ? chromaticities_of(color->primaries) : Chromaticities{});
+    add_primaries(part.header, color ? chromaticities_of(color->primaries) : Chromaticities{});
     if (options.attributes) options.attributes->add_to(part.header);
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)

@@ -127,6 +127,32 @@ Picture light_of_all(bool is_grey) {
     return picture;
 }
 
+// CTA-861.3: the brightest component of a pixel, and the mean of each pixel's brightest.
+TEST_F(ImageWrite, PqSaysHowBrightItIs) {
+    Picture picture(4, 1);
+    // Published codes of 203, 1000 and 100 cd/m2 (ITU-R BT.2408-7), and black.
+    const std::array<float, 4> codes{0.5807F, 0.7518F, 0.5081F, 0};
+    for (std::uint32_t x = 0; x < 4; ++x)
+        for (int c = 0; c < 3; ++c) picture.at(x, 0)[c] = c == static_cast<int>(x % 3) ? codes[x] : 0;
+    ASSERT_TRUE(
+        write_picture(file("a.png"), picture, {.samples = SampleKind::Integer16, .space = *find_output_space("pq")}));
+    const std::string text = content(file("a.png"));
+    const auto number = [&](std::size_t at) {
+        std::uint32_t out = 0;
+        for (std::size_t i = 0; i < 4; ++i) out = out << 8 | static_cast<unsigned char>(text.at(at + i));
+        return out;
+    };
+    const std::size_t light = text.find("cLLI"), display = text.find("mDCV");
+    ASSERT_TRUE(light != std::string::npos && display != std::string::npos && light < text.find("IDAT"));
+    EXPECT_NEAR(number(light + 4) / 1e4, 1000, 2);
+    EXPECT_NEAR(number(light + 8) / 1e4, (203 + 1000 + 100) / 4.0, 1);
+    EXPECT_EQ(number(display + 4), 35400U << 16 | 14600U) << "red of Rec. 2020, in fiftieths of a thousandth";
+    EXPECT_EQ(number(display + 20), 10000000U);
+    EXPECT_NE(read_frame(file("a.png"))->color_said.find("cd/m2"), std::string::npos);
+    ASSERT_TRUE(write_picture(file("b.png"), picture));
+    EXPECT_EQ(content(file("b.png")).find("cLLI"), std::string::npos);
+}
+
 TEST_F(ImageWrite, EverySpaceIsSaidByTheFileAndReadAgain) {
     for (const char* const name : {"srgb", "p3", "pq", "hlg"}) {
         const Result<OutputSpace> space = find_output_space(name);
