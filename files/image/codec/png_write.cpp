@@ -102,6 +102,16 @@ Bytes compressed(const PngDesc& desc) {
     return other.size() < out.size() ? other : out;
 }
 
+// PNG, third edition, 11.3.2.3. cICP goes before it.
+void put_profile(Bytes& out, std::span<const std::byte> profile) {
+    constexpr std::string_view name("ICC profile\0\0", 13);  // behind its end the way of packing
+    const std::span<const std::byte> start = std::as_bytes(std::span(name));
+    Bytes chunk(start.begin(), start.end());
+    const Bytes packed = deflated({reinterpret_cast<const std::uint8_t*>(profile.data()), profile.size()}, 9);
+    chunk.insert(chunk.end(), packed.begin(), packed.end());
+    put_chunk(out, "iCCP", chunk);
+}
+
 // PNG, third edition, 11.3.2.7 and 11.3.2.8.
 void put_light(Bytes& out, const PngDesc::Light& light) {
     const auto nits = [](double value) { return static_cast<std::uint32_t>(std::lround(value * 10000)); };
@@ -139,6 +149,7 @@ Result<std::vector<std::byte>> encode_png(const PngDesc& desc) {
         put_chunk(out, "cICP", std::array{std::byte{(*codes)[0]}, std::byte{(*codes)[1]}, std::byte{0}, std::byte{1}});
     else if (desc.is_srgb)
         put_chunk(out, "sRGB", std::array{std::byte{0}});  // rendering intent: perceptual
+    if (!desc.profile.empty()) put_profile(out, desc.profile);
     if (desc.light) put_light(out, *desc.light);
     const Bytes data = compressed(desc);
     // A chunk has at most 2^31 - 1 bytes.

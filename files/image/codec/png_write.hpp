@@ -23,6 +23,8 @@ struct PngDesc {
     bool is_srgb = true;            ///< false: the file says nothing of its colour, but for what comes next
     /// Primaries and curve by ITU-T H.273, in place of sRGB.
     std::optional<std::array<std::uint8_t, 2>> video_codes{};
+    /// Beside that an ICC profile, for those who do not know these numbers; empty: none.
+    std::vector<std::byte> profile{};
     /// Of PQ, in cd/m2: the display that it is made for, the brightest component of a pixel, and the mean of each pixel's
     /// brightest (CTA-861.3, MaxCLL and MaxFALL). Without them browsers take the brightest that PQ holds for the picture's.
     struct Light {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -146,6 +147,76 @@ std::optional<ColorCoding> profile_coding(Bytes profile) {
         if (std::ranges::equal(*matrix, *to_rec709(known), [](double a, double b) { return std::abs(a - b) < 2e-3; }))
             out.primaries = known;
     }
+    return out;
+}
+
+std::vector<std::byte> display_profile(std::string_view name, const Chromaticities& primaries) {
+    constexpr std::array<double, 3> d50{0.9642, 1, 0.8249};
+    std::vector<std::byte> tags, data;
+    const auto put = [](std::vector<std::byte>& to, std::string_view text) {
+        for (const char c : text) to.push_back(static_cast<std::byte>(c));
+    };
+    const auto put_word = [](std::vector<std::byte>& to, std::uint32_t value) {
+        for (int shift = 24; shift >= 0; shift -= 8) to.push_back(static_cast<std::byte>(value >> shift & 0xff));
+    };
+    const auto put_fixed = [&](std::vector<std::byte>& to, double value) {
+        put_word(to, static_cast<std::uint32_t>(std::lround(value * 65536)));
+    };
+    constexpr std::uint32_t tag_count = 10, data_start = 128 + 4 + 12 * tag_count;
+    const auto add = [&](std::initializer_list<std::string_view> names, const std::function<void()>& fill) {
+        const std::size_t start = data.size();
+        fill();
+        for (const std::string_view tag : names) {
+            put(tags, tag);
+            put_word(tags, static_cast<std::uint32_t>(data_start + start));
+            put_word(tags, static_cast<std::uint32_t>(data.size() - start));
+        }
+        data.resize((data.size() + 3) / 4 * 4);
+    };
+    const auto add_text = [&](std::string_view tag, std::string_view text) {
+        add({tag}, [&] {
+            put(data, std::string_view("mluc\0\0\0\0\0\0\0\1\0\0\0\x0c"
+                                       "enUS",
+                                       20));
+            put_word(data, static_cast<std::uint32_t>(2 * text.size()));
+            put_word(data, 28);
+            for (const char c : text) put(data, std::string_view(std::array{'\0', c}.data(), 2));
+        });
+    };
+    const auto add_xyz = [&](std::string_view tag, const std::array<double, 3>& xyz) {
+        add({tag}, [&] {
+            put(data, std::string_view("XYZ \0\0\0\0", 8));
+            for (const double value : xyz) put_fixed(data, value);
+        });
+    };
+    add_text("desc", name);
+    add_text("cprt", "Public domain (CC0)");
+    add_xyz("wtpt", d50);
+    add({"chad"}, [&] {
+        put(data, std::string_view("sf32\0\0\0\0", 8));
+        // Bradford, from D65 to D50.
+        for (const double value :
+             {1.047886, 0.022919, -0.050216, 0.029582, 0.990484, -0.017079, -0.009252, 0.015073, 0.751678})
+            put_fixed(data, value);
+    });
+    const Chromaticities connection{{1, 0}, {0, 1}, {0, 0}, {d50[0] / 2.7891, d50[1] / 2.7891}};
+    const ColorMatrix matrix = *conversion(primaries, connection);  // of XYZ that is 1 at D50
+    for (std::size_t i = 0; i < 3; ++i)
+        add_xyz(std::array<std::string_view, 3>{"rXYZ", "gXYZ", "bXYZ"}[i],
+                {matrix[i] * d50[0], matrix[3 + i] * d50[1], matrix[6 + i] * d50[2]});
+    add({"rTRC", "gTRC", "bTRC"}, [&] {
+        put(data, std::string_view("para\0\0\0\0\0\3\0\0", 12));
+        for (const double value : {2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045}) put_fixed(data, value);
+    });
+    std::vector<std::byte> out;
+    put_word(out, static_cast<std::uint32_t>(data_start + data.size()));
+    put(out, std::string_view("\0\0\0\0\x04\x30\0\0mntrRGB XYZ \x07\xe6\0\1\0\1\0\0\0\0\0\0acsp", 36));
+    out.resize(68);
+    for (const double value : d50) put_fixed(out, value);
+    out.resize(128);
+    put_word(out, tag_count);
+    out.insert(out.end(), tags.begin(), tags.end());
+    out.insert(out.end(), data.begin(), data.end());
     return out;
 }
 

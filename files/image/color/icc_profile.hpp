@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "image/color/color_coding.hpp"
 
@@ -18,5 +20,8 @@ namespace darkroom {
 /// Primaries are relative to D50, as the profile's connection space is. None: it is of another kind, its channels have
 /// curves of their own, or one that is neither a formula nor near sRGB's or a power.
 [[nodiscard]] std::optional<ColorCoding> profile_coding(std::span<const std::byte> profile);
+
+/// A profile of a display with these primaries, a white of D65 and the curve of sRGB (ICC.1:2022, version 4.3).
+[[nodiscard]] std::vector<std::byte> display_profile(std::string_view name, const Chromaticities& primaries);
 
 }  // namespace darkroom

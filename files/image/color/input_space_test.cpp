@@ -223,6 +223,9 @@ TEST(ImageIccProfile, OfAMatrixAndACurveIsRead) {
     for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(matrix[i], published[i], 1e-3) << i;
     EXPECT_FALSE(coding(matrix_profile(p3, odd))) << "no curve that is known";
     EXPECT_FALSE(coding(matrix_profile(p3, parametric, gamma))) << "a curve for each channel";
+    const std::vector<std::byte> ours = display_profile("Display P3", find_input_space("p3")->primaries);
+    EXPECT_EQ(profile_coding(ours), (ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}));
+    EXPECT_EQ(profile_description(ours), "Display P3");
     const std::string whole = matrix_profile(srgb, sampled);
     for (std::size_t size = 0; size < whole.size(); size += 7) coding(whole.substr(0, size));
 }

@@ -20,6 +20,7 @@
 #include "image/codec/codecs.hpp"
 #include "image/codec/png_write.hpp"
 #include "image/color/color_coding.hpp"
+#include "image/color/icc_profile.hpp"
 #include "image/exr/write.hpp"
 #include "image/picture/alpha.hpp"
 
@@ -214,6 +215,8 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
                         .is_srgb = options.view == nullptr};
             if (const auto color = color_of(options, desc.kind); color && *color != srgb_color)
                 png.video_codes = video_codes_of(*color);
+            if (const auto color = color_of(options, desc.kind); color == p3_color)
+                png.profile = display_profile("Display P3", chromaticities_of(Primaries::P3));
             if (const auto color = color_of(options, desc.kind); color && color->transfer == Transfer::Pq)
                 png.light = desc.kind == SampleKind::Integer8 ? light_of<std::uint8_t>(desc, *color)
                                                               : light_of<std::uint16_t>(desc, *color);

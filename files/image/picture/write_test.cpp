@@ -194,7 +194,8 @@ TEST_F(ImageWrite, SpacesThatAFileCannotHoldAreRefused) {
         return kind ? std::string(name_of(*kind)) : kind.error().text;
     };
     EXPECT_EQ(error("a.png", "pq"), name_of(SampleKind::Integer16)) << "eight bits are not enough";
-    EXPECT_EQ(error("a.png", "pq", SampleKind::Integer8), name_of(SampleKind::Integer8)) << "but who wants them";
+    EXPECT_EQ(error("a.png", "pq", SampleKind::Integer8),
+              "a.png: pq in 8 bits shows steps (ITU-R BT.2100 asks for 10); --bits 16 is allowed");
     EXPECT_EQ(error("a.png", "srgb"), name_of(SampleKind::Integer8));
     EXPECT_EQ(error("a.jpg", "p3"), "a.jpg: JPEG cannot be marked as p3; .png .exr can");
     EXPECT_EQ(error("a.png", "rec2020"), "a.png: rec2020 in 16-bit integer samples; allowed: srgb, p3, pq, hlg");
