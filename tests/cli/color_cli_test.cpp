@@ -166,6 +166,17 @@ TEST_F(CliColor, CodesOfAnotherDisplayAreNotWrittenAsThoughTheyWereOfSrgb) {
     EXPECT_NE(content(path("said.png")).find("cICP"), std::string::npos);
 }
 
+TEST_F(CliColor, CodesOfTwoSpacesAreComparedWithAWord) {
+    for (const char* const space : {"srgb", "p3"})
+        ASSERT_EQ(run({"develop", path("frame.exr"), "-o", path(std::string(space) + ".png"), "--bits", "8",
+                       "--output-space", space})
+                      .code,
+                  0);
+    EXPECT_EQ(run({"compare", path("srgb.png"), path("srgb.png")}).err, "");
+    const Outcome two = run({"compare", path("srgb.png"), path("p3.png")});
+    EXPECT_NE(two.err.find("two color spaces (sRGB; cICP 12 13 0 1)"), std::string::npos) << two.err;
+}
+
 // OpenEXR has colours multiplied by alpha, PNG has them straight.
 TEST_F(CliColor, AnEdgeHasTheColourOfWhatItIsTheEdgeOf) {
     if (find_effect("tonemap") == nullptr) GTEST_SKIP() << "this build has no tonemap";

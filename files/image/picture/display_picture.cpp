@@ -37,9 +37,13 @@ Result<ComparablePicture> read_comparable(LayerFile& file) {
     const FilePart& part = file.decoder().parts()[layer.part];
     ComparablePicture out{.picture = picture_of(samples, part)};
     const SampleKind kind = part.kinds[layer.channels.front()];
-    if (kind != SampleKind::Half && kind != SampleKind::Float) return out;
+    const auto [coding, warning, said] = file.decoder().color(layer.part);
+    if (kind != SampleKind::Half && kind != SampleKind::Float) {
+        out.coding = coding;
+        out.color_said = said;
+        return out;
+    }
     out.encoding = PictureEncoding::SceneLinear;
-    const std::optional<ColorCoding> coding = file.decoder().color(layer.part).coding;
     if (!coding || samples.channels < 3) return out;
     decode(out.picture, kind, coding->curve);
     const std::optional<ColorMatrix> matrix = to_rec709(coding->primaries);

@@ -5,7 +5,10 @@
 
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <optional>
+#include <string>
 
+#include "image/color/color_coding.hpp"
 #include "image/compare/flip.hpp"
 #include "image/frame/layer_file.hpp"
 #include "image/picture/picture.hpp"
@@ -15,6 +18,8 @@ namespace darkroom {
 struct ComparablePicture {
     Picture picture;  ///< as large as the display window
     PictureEncoding encoding = PictureEncoding::Display;
+    std::optional<ColorCoding> coding;  ///< of code values, where the file says it
+    std::string color_said;             ///< by what; empty: it does not
 };
 
 /// Any known image file. Floats of other primaries than Rec. 709 are converted, but for pixels that are not finite. The

@@ -7,6 +7,7 @@
 
 #include "core/text/param_text.hpp"
 #include "image/frame/layer_file.hpp"
+#include "programs/darkroom/run/report.hpp"
 
 namespace app {
 
@@ -76,6 +77,14 @@ class FileComparison {
         if (a.encoding != b.encoding)
             return user_error(fmt::format(
                 "{}: one is encoded for a display and the other holds linear floats, they cannot be compared", both()));
+        // What says nothing is sRGB.
+        if (a.coding.value_or(darkroom::ColorCoding{}) != b.coding.value_or(darkroom::ColorCoding{})) {
+            const auto said = [](const darkroom::ComparablePicture& picture) {
+                return picture.color_said.empty() ? "nothing, so sRGB" : picture.color_said;
+            };
+            warn(fmt::format("{}: their code values are of two color spaces ({}; {}) and are compared as they are",
+                             both(), said(a), said(b)));
+        }
         Result<darkroom::Comparison> result = darkroom::compare(a.picture, b.picture, {.encoding = a.encoding});
         if (!result)
             return darkroom::failure({result.error().fault, fmt::format("{}: {}", both(), result.error().text)});
