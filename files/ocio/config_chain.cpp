@@ -79,6 +79,22 @@ Failure unknown(std::string_view what, const std::string& name, const Names& nam
     return user_error(fmt::format("has no {} '{}'{}", what, printable(name), alternatives(name, names, "there are")));
 }
 
+/// To linear Rec. 709.
+Result<ocio::GroupTransformRcPtr> transform_from(const Opened& opened, const std::string& space) {
+    const auto& [config, link] = opened;
+    if (!config->getColorSpace(space.c_str()))
+        return unknown("color space", space, names_of(config->getNumColorSpaces(), [&](int i) {
+                           return config->getColorSpaceNameByIndex(i);
+                       }));
+    const ocio::ColorSpaceTransformRcPtr to_link = ocio::ColorSpaceTransform::Create();
+    to_link->setSrc(space.c_str());
+    to_link->setDst(link.name.c_str());
+    ocio::GroupTransformRcPtr all = ocio::GroupTransform::Create();
+    all->appendTransform(to_link);
+    all->appendTransform(transform_of(*conversion(link.primaries, {})));
+    return all;
+}
+
 template <class Make>
 Result<std::unique_ptr<ColorChain>> guarded(const std::filesystem::path& configuration, const Make& make) {
     try {
@@ -94,24 +110,14 @@ Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path
                                                      const std::string& space) {
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         DARKROOM_TRY_VALUE(const Opened opened, open_config(configuration));
-        const ocio::ConstConfigRcPtr& config = opened.config;
-        const Link& link = opened.link;
-        if (!config->getColorSpace(space.c_str()))
-            return unknown("color space", space, names_of(config->getNumColorSpaces(), [&](int i) {
-                               return config->getColorSpaceNameByIndex(i);
-                           }));
-        const ocio::ColorSpaceTransformRcPtr to_link = ocio::ColorSpaceTransform::Create();
-        to_link->setSrc(space.c_str());
-        to_link->setDst(link.name.c_str());
-        const ocio::GroupTransformRcPtr all = ocio::GroupTransform::Create();
-        all->appendTransform(to_link);
-        all->appendTransform(transform_of(*conversion(link.primaries, {})));
-        return std::make_unique<ConfigChain>(config, all);
+        DARKROOM_TRY_VALUE(const ocio::GroupTransformRcPtr all, transform_from(opened, space));
+        return std::make_unique<ConfigChain>(opened.config, all);
     });
 }
 
 Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& configuration,
-                                                  const std::string& display, const std::string& view) {
+                                                  const std::string& display, const std::string& view,
+                                                  const std::string& space) {
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         DARKROOM_TRY_VALUE(const Opened opened, open_config(configuration));
         const ocio::ConstConfigRcPtr& config = opened.config;
@@ -122,6 +128,15 @@ Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& c
             names_of(config->getNumViews(display.c_str()), [&](int i) { return config->getView(display.c_str(), i); });
         const std::string chosen = view.empty() ? std::string(config->getDefaultView(display.c_str())) : view;
         if (std::ranges::find(views, chosen) == views.end()) return unknown("view", chosen, views);
+        const ocio::ConstColorSpaceRcPtr shown =
+            config->getColorSpace(config->getDisplayViewColorSpaceName(display.c_str(), chosen.c_str()));
+        if (shown && shown->isData()) {
+            DARKROOM_TRY_VALUE(const ocio::GroupTransformRcPtr back,
+                               space.empty() ? Result<ocio::GroupTransformRcPtr>(ocio::GroupTransform::Create())
+                                             : transform_from(opened, space));
+            back->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+            return std::make_unique<ConfigChain>(config, back);
+        }
         const ocio::DisplayViewTransformRcPtr to_view = ocio::DisplayViewTransform::Create();
         to_view->setSrc(link.name.c_str());
         to_view->setDisplay(display.c_str());

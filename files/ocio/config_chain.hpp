@@ -11,6 +11,7 @@ namespace darkroom {
 [[nodiscard]] Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path& configuration,
                                                                    const std::string& space);
 [[nodiscard]] Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& configuration,
-                                                                const std::string& display, const std::string& view);
+                                                                const std::string& display, const std::string& view,
+                                                                const std::string& space);
 
 }  // namespace darkroom

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 #include "core/text/lower.hpp"
@@ -49,8 +50,12 @@ std::string words_of_reader(std::string_view said, const std::filesystem::path& 
         remove_all(text, "(" + name + ")");
         remove_all(text, name);
     }
-    for (const std::string_view mark : {"Error is: ", "parsing error: ", "with this error: ", " file . ", "yaml-cpp: error "})
+    for (const std::string_view mark :
+         {"Error is: ", "parsing error: ", "with this error: ", " file . ", "yaml-cpp: error "})
         if (!text.ends_with(mark)) remove_up_to(text, mark);
+    // What it says of a configuration that is newer than itself names no file a second time.
+    remove_all(text, "profile '' ");
+    std::ranges::replace(text, '\n', ' ');
     const std::string line = take_line(text);
     constexpr std::string_view ends = " .:,\n\t";
     text.erase(0, std::min(text.find_first_not_of(ends), text.size()));

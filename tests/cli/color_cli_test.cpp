@@ -38,7 +38,9 @@ displays:
   screen:
     - !<View> {name: root, colorspace: rooted}
     - !<View> {name: half, colorspace: doubled}
+    - !<View> {name: numbers, colorspace: raw}
 colorspaces:
+  - !<ColorSpace> {name: raw, isdata: true}
   - !<ColorSpace> {name: lin_rec709}
   - !<ColorSpace>
     name: rooted
@@ -87,7 +89,7 @@ TEST_F(CliColor, SpacesOfAConfigurationAreRead) {
     EXPECT_NEAR(color_after({"--ocio", config, "--input-space", "rooted"})[2], grey * grey, 1e-3);
     expect_error(
         {"--ocio", config, "--input-space", "dubled"},
-        config + ": has no color space 'dubled', did you mean 'doubled'? there are lin_rec709, rooted and doubled");
+        config + ": has no color space 'dubled', did you mean 'doubled'? there are raw, lin_rec709, rooted and doubled");
     expect_error({"--ocio", path("none.ocio"), "--input-space", "rooted"},
                  path("none.ocio") + ": there is no such file");
     write("bad.ocio", "ocio_profile_version: 2\n");
@@ -215,6 +217,13 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     EXPECT_NEAR(color_after({"--ocio", config, "--display", "screen", "--view", "half"}, "c.png")[0], grey / 2,
                 0.5 / 255);
     EXPECT_EQ(content(path("a.png")).find("sRGB"), std::string::npos) << "the display need not be one";
+    // OpenColorIO does nothing to numbers on the way to a view of data.
+    for (const char* const space : {"lin_rec709", "doubled", "rooted"})
+        EXPECT_NEAR(color_after({"--ocio", config, "--input-space", space, "--display", "screen", "--view", "numbers",
+                                 "--bits", "16"},
+                                "n.png")[0],
+                    grey, 1e-4)
+            << space;
     // The look's own curve gives way to the view's.
     const Outcome outcome =
         run({"develop", path("frame.exr"), "-o", path("d.png"), "--ocio", config, "--display", "screen"});
@@ -223,7 +232,7 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     expect_error({"--ocio", config, "--display", "scren"},
                  config + ": has no display 'scren', did you mean 'screen'? there are screen");
     expect_error({"--ocio", config, "--display", "screen", "--view", "x"},
-                 config + ": has no view 'x': there are root and half");
+                 config + ": has no view 'x': there are root, half and numbers");
     expect_error({"--display", "screen"}, "--display: needs --ocio FILE, which defines it");
     expect_error({"--ocio", config}, "--ocio: needs --input-space or --display, which use it");
     expect_error({"--view", "root"}, "--view: needs --display NAME");

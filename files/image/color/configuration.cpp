@@ -42,9 +42,10 @@ Result<std::shared_ptr<const ColorChain>> space_of_configuration(const std::file
 }
 
 Result<std::shared_ptr<const ColorChain>> view_of_configuration(const std::filesystem::path& configuration,
-                                                                const std::string& display, const std::string& view) {
+                                                                const std::string& display, const std::string& view,
+                                                                const std::string& space) {
     return made_of(configuration,
-                   [&](const ColorChains& chains) { return chains.to_view(configuration, display, view); });
+                   [&](const ColorChains& chains) { return chains.to_view(configuration, display, view, space); });
 }
 
 void apply(const ColorChain& chain, Picture& picture) {

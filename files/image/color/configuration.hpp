@@ -20,9 +20,11 @@ namespace darkroom {
 [[nodiscard]] Result<std::shared_ptr<const ColorChain>> space_of_configuration(
     const std::filesystem::path& configuration, const std::string& space);
 
-/// From linear Rec. 709 to a view of a display; no view: its usual one. The error text begins with the path.
+/// From linear Rec. 709 to a view of a display; no view: its usual one. A view of data shows the numbers of `space`, which
+/// the light came from; empty: those of Rec. 709. The error text begins with the path.
 [[nodiscard]] Result<std::shared_ptr<const ColorChain>> view_of_configuration(
-    const std::filesystem::path& configuration, const std::string& display, const std::string& view);
+    const std::filesystem::path& configuration, const std::string& display, const std::string& view,
+    const std::string& space);
 
 /// Alpha stays; a colour that becomes no finite number is 0.
 void apply(const ColorChain& chain, Picture& picture);

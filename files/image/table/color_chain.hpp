@@ -34,9 +34,11 @@ struct ColorChains {
     /// From a colour space of a configuration (.ocio) to linear Rec. 709.
     Result<std::unique_ptr<ColorChain>> (*from_space)(const std::filesystem::path& configuration,
                                                       const std::string& space);
-    /// From linear Rec. 709 to a view of a display of a configuration; no view: the display's usual one.
+    /// From linear Rec. 709 to a view of a display of a configuration; no view: the display's usual one. A view of data
+    /// shows the numbers of `space`, which the light came from; empty: those of Rec. 709.
     Result<std::unique_ptr<ColorChain>> (*to_view)(const std::filesystem::path& configuration,
-                                                   const std::string& display, const std::string& view);
+                                                   const std::string& display, const std::string& view,
+                                                   const std::string& space);
 };
 
 /// Loads the module the first time. The error is the machine's: the module is not where it was installed.

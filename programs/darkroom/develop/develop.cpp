@@ -241,7 +241,7 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     DARKROOM_TRY(options.frames_per_second.read_to(job.frames_per_second));
     DARKROOM_TRY(options.write.ocio.check(options.frame.has_input_space()));
     DARKROOM_TRY_VALUE(job.frame, options.frame.options(options.write.ocio.configuration, eye));
-    DARKROOM_TRY_VALUE(job.write, options.write.options());
+    DARKROOM_TRY_VALUE(job.write, options.write.options(options.frame.input_space()));
     DARKROOM_TRY_VALUE(job.stream,
                        options.write.stream(job.out, job.frames_per_second.value_or(stream_frames_per_second)));
     if (job.stream) DARKROOM_TRY(options.run.check_stream());

@@ -27,6 +27,7 @@ class FrameFlags {
     bool keeps_overscan = false;
 
     [[nodiscard]] bool has_input_space() const { return !input_space_.empty(); }
+    [[nodiscard]] const std::string& input_space() const { return input_space_; }
 
   private:
     std::vector<std::string> maps_;

@@ -28,13 +28,13 @@ darkroom::Result<> OcioFlags::check(bool has_input_space) const {
     return user_error("--ocio: needs --input-space or --display, which use it");
 }
 
-darkroom::Result<Chain> OcioFlags::view() const {
+darkroom::Result<Chain> OcioFlags::view(const std::string& input_space) const {
     if (display_.empty()) {
         if (!view_.empty()) return user_error("--view: needs --display NAME");
         return Chain();
     }
     if (configuration.empty()) return user_error("--display: needs --ocio FILE, which defines it");
-    return darkroom::view_of_configuration(configuration, display_, view_);
+    return darkroom::view_of_configuration(configuration, display_, view_, input_space);
 }
 
 }  // namespace app

@@ -16,8 +16,10 @@ namespace app {
 class OcioFlags {
   public:
     void add_to(CommandFlags command, bool has_view);
-    /// Null: no display was named. Errors: a display without a configuration, and what the configuration lacks.
-    [[nodiscard]] darkroom::Result<std::shared_ptr<const darkroom::ColorChain>> view() const;
+    /// Null: no display was named. `input_space`: of the frame, whose numbers a view of data shows. Errors: a display
+    /// without a configuration, and what the configuration lacks.
+    [[nodiscard]] darkroom::Result<std::shared_ptr<const darkroom::ColorChain>> view(
+        const std::string& input_space) const;
 
     /// A configuration that nothing asks for is an error.
     [[nodiscard]] darkroom::Result<> check(bool has_input_space) const;

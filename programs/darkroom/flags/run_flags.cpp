@@ -73,7 +73,7 @@ void WriteFlags::add_to(CommandFlags command) {
     ocio.add_to(command, true);
 }
 
-Result<darkroom::WriteOptions> WriteFlags::options() const {
+Result<darkroom::WriteOptions> WriteFlags::options(const std::string& input_space) const {
     if (const bool is_known = alpha_.empty() || alpha_ == "true" || alpha_ == "false" || alpha_ == "glow"; !is_known)
         return user_error(fmt::format("--alpha={}: allowed is glow", printable(alpha_)));
     darkroom::WriteOptions out{
@@ -83,7 +83,7 @@ Result<darkroom::WriteOptions> WriteFlags::options() const {
     }
     DARKROOM_TRY_VALUE(out.space, space_.space());
     DARKROOM_TRY(quality_.read_to(out.quality));
-    DARKROOM_TRY_VALUE(out.view, ocio.view());
+    DARKROOM_TRY_VALUE(out.view, ocio.view(input_space));
     return out;
 }
 

@@ -35,7 +35,8 @@ class SpaceFlags {
 class WriteFlags {
   public:
     void add_to(CommandFlags command);
-    [[nodiscard]] darkroom::Result<darkroom::WriteOptions> options() const;
+    /// `input_space`: see OcioFlags::view.
+    [[nodiscard]] darkroom::Result<darkroom::WriteOptions> options(const std::string& input_space = {}) const;
     /// What `out` asks for if it is standard output, else nothing. Errors: it and --format must go together, other
     /// flags of files say nothing of a stream, and a terminal shows no pictures.
     [[nodiscard]] darkroom::Result<std::optional<StreamDesc>> stream(const std::string& out,
