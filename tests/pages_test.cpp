@@ -53,11 +53,11 @@ std::vector<std::string> lines_of(const std::string& text) {
     }
     return out;
 }
-/// Without a remark, and beginning with ./darkroom where a page may leave out the folder.
+/// Without a remark, and beginning with ./ where a page may leave out the folder.
 std::string command_of(const std::string& line) {
     const std::string command =
         line.find("# exit code ") != std::string::npos ? line : line.substr(0, line.find("  #"));
-    return command.starts_with("darkroom ") ? "./" + command : command;
+    return command.starts_with("darkroom ") || command.starts_with("darkroom_lab ") ? "./" + command : command;
 }
 
 std::vector<std::string> pages_of_docs() {
@@ -100,8 +100,11 @@ class CliPages : public test::CliFixture {
         if (count_ < 49) GTEST_SKIP() << "effects are left out of this build";
         for (const char* const name : {"looks", "scenes", "hud", "controllers", "examples"})
             fs::create_symlink(fs::path(test::source_folder) / name, path(name));
-        write("darkroom", std::string(small_program) + test::quoted(program) + " \"${words[@]}\"\n");
-        fs::permissions(path("darkroom"), fs::perms::owner_all);
+        for (const std::string name : {"darkroom", "darkroom_lab"}) {
+            const std::string own = (fs::path(program).parent_path() / name).string();
+            write(name, std::string(small_program) + test::quoted(own) + " \"${words[@]}\"\n");
+            fs::permissions(path(name), fs::perms::owner_all);
+        }
         for (const char* const name : {"samples", "expected", "pictures", "folder"}) fs::create_directory(path(name));
         for (const char* const name :
              {"samples/window.exr", "a.exr", "b.exr", "a.0001.exr", "b.0001.exr", "shot.0001.exr", "shot.0002.exr"})
@@ -121,7 +124,7 @@ class CliPages : public test::CliFixture {
             std::string chosen;
             for (const std::string& line : lines_of(text)) {
                 const std::string command = command_of(line);
-                if (!command.starts_with("./darkroom ") || is_left_out(command)) continue;
+                if (!command.starts_with("./darkroom") || is_left_out(command)) continue;
                 chosen += command + "\n";
                 ++run;
             }
@@ -256,7 +259,7 @@ TEST_F(CliPages, WhatTheySayIsPrinted) {
 TEST_F(CliPages, FlagsAndFilesAreThere) {
     std::map<std::string, std::string> help;
     std::size_t flags = 0, named = 0;
-    const std::regex command("(?:^|[ /])darkroom ((?:farm |lut )?[a-z]+) ([^|>#]*)"), quoted("'[^']*'");
+    const std::regex command("(?:^|[ /])(darkroom(?:_lab)? (?:farm |lut )?[a-z]+) ([^|>#]*)"), quoted("'[^']*'");
     const std::regex flag("--[a-z][a-z-]*"), file(R"((?:looks|scenes|hud|controllers|examples)/[a-z_.]+\.[a-z]+)");
     for (const std::string& page : pages_of_docs())
         for (const auto& [kind, text] : blocks_of_page(page)) {
@@ -267,7 +270,7 @@ TEST_F(CliPages, FlagsAndFilesAreThere) {
                 if (!std::regex_search(bare, found, command)) continue;
                 const std::string name = found[1], words = found[2];
                 std::string& known = help[name];
-                if (known.empty()) known = run_lines("darkroom " + name + " --help-all").out;
+                if (known.empty()) known = run_lines(name + " --help-all").out;
                 // Those of an effect's file are its own; those behind -- are another command's.
                 const std::string own = words.substr(0, std::min(words.find(" -- "), words.find("--effect ")));
                 for (std::sregex_iterator at(own.begin(), own.end(), flag), end; at != end; ++at, ++flags)
@@ -322,6 +325,7 @@ TEST_F(CliPages, TemporalLab) {
 }
 TEST_F(CliPages, Bindings) {
     fs::create_symlink(fs::path(test::source_folder) / "programs", path("programs"));
+    fs::create_symlink(test::binary_folder, path("build"));
     fs::create_directory(path("FOLDER"));
     std::size_t run = 0;
     for (const auto& [kind, text] : blocks_of_page("docs/bindings.md")) {

@@ -162,7 +162,7 @@ areas = {
     "engine/core": "Values and files",
 }
 houses = ("engine", "files", "run", "scenes", "edit", "proof", "programs")
-left_out = ("test", "graph_check", "programs/darkroom/api", "run/svg")
+left_out = ("test", "graph_check", "run/svg")
 
 
 def argument_of(text, at):

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What `darkroom api --json` says, for the modules that write it in a language."""
+"""What `darkroom_lab api --json` says, for the modules that write it in a language."""
 
 import json
-import subprocess
 
 C_TYPES = {"void", "char", "float", "double", "int32_t", "uint32_t", "uint64_t", "size_t"}
 
@@ -67,7 +66,7 @@ class Api:
         self.vulkan = document["vulkan"]
         self.vulkan_structs = [Struct(row) for row in self.vulkan if row["kind"] == "struct"]
         # What a name stands for: "c", "handle", "alias", "enum", "struct", "callback", and of Vulkan's "object",
-        # "integer", "function" and "opaque" (vulkan_types.hpp).
+        # "integer", "function" and "opaque" (proof/lab/api/c_header.hpp).
         self.kinds = {name: "c" for name in C_TYPES}
         self.kinds.update({row["name"]: row["kind"] for row in self.vulkan})
         for kind, rows in (("handle", self.handles), ("alias", self.aliases), ("enum", self.enums)):
@@ -80,12 +79,9 @@ class Api:
 
     @classmethod
     def read(cls, source):
-        """Of a file of JSON, or of the program itself."""
-        if source.endswith(".json"):
-            with open(source, encoding="utf-8") as file:
-                return cls(json.load(file))
-        told = subprocess.run([source, "api", "--json"], stdout=subprocess.PIPE, check=True)
-        return cls(json.loads(told.stdout))
+        """Of api.json."""
+        with open(source, encoding="utf-8") as file:
+            return cls(json.load(file))
 
     def integer_bits(self, name):
         """Of one of Vulkan's kind "integer"."""
@@ -94,7 +90,7 @@ class Api:
     def head(self, language, comment):
         """How each file begins."""
         lines = [f"Darkroom {self.version} for {language}. "
-                 f"Made by programs/bindings/make_bindings.py of `darkroom api --json`:",
+                 f"Made by programs/bindings/make_bindings.py of `darkroom_lab api --json`:",
                  "docs/bindings.md. A change here is lost; what is said of a name is said in darkroom.h."]
         return "".join(f"{comment} {line}\n" for line in lines)
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_bindings.py SOURCE FOLDER [LANGUAGE...]: writes what languages call Darkroom by into a folder, of SOURCE,
-which is the program `darkroom` or a file of what its `api --json` says (docs/bindings.md). Another language is a module
-beside this one with a function write(api) that returns the text, or texts by their places in a folder."""
+"""make_bindings.py API.json FOLDER [LANGUAGE...]: writes what languages call Darkroom by into a folder, of what
+`darkroom_lab api --json` says (docs/bindings.md). Another language is a module beside this one with a function write(api)
+that returns the text, or texts by their places in a folder."""
 
 import importlib
 import os
@@ -25,7 +25,7 @@ def write(path, text):
 def main(arguments):
     languages = arguments[2:] or list(FILES)
     if len(arguments) < 2 or not set(languages) <= set(FILES):
-        print(f"usage: make_bindings.py SOURCE FOLDER [{'|'.join(FILES)}...]", file=sys.stderr)
+        print(f"usage: make_bindings.py API.json FOLDER [{'|'.join(FILES)}...]", file=sys.stderr)
         return 1
     api = Api.read(arguments[0])
     for language in languages:

@@ -31,7 +31,7 @@ struct CommandHost {
 struct CommandRow {
     std::vector<std::string_view> names;
     int place = 0;           ///< in the help, lowest first
-    bool is_of_lab = false;  ///< for whoever embeds or changes Darkroom: the help only names it
+    bool is_rare = false;  ///< for packages, hosts and who doubts a driver: the help only names it
     std::vector<Command> (*add)(const CommandHost&) = nullptr;
 };
 /// Every command of this build, by place.

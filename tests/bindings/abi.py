@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""abi.py BINDINGS SOURCE LAYOUT: what compiled programs hold of libdarkroom.so, a line each: values of enums, the
+"""abi.py BINDINGS API.json LAYOUT: what compiled programs hold of libdarkroom.so, a line each: values of enums, the
 place, size and type of members (LAYOUT has them of C, make_layouts.py), and the functions that are called."""
 
 import sys

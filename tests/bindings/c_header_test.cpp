@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What `darkroom api` reads of the header is all that stands in it, and what it does not understand is an error.
+// What `darkroom_lab api` reads of the header is all that stands in it, and what it does not understand is an error.
 #include <regex>
 
-#include "programs/darkroom/api/c_header.hpp"
+#include "lab/api/c_header.hpp"
 #include "programs/darkroom/run/json.hpp"
-#include "tests/cli/cli_support.hpp"
+#include "tests/cli/lab_support.hpp"
 
 namespace darkroom {
 namespace {
@@ -162,7 +162,7 @@ TEST(CHeaderReader, AnyPartOfTheHeaderIsReadOrRefused) {
     EXPECT_GT(refused, tried);
 }
 
-class CliApi : public test::CliFixture {
+class CliApi : public test::WithLab<test::CliFixture> {
   protected:
     [[nodiscard]] app::Json document() const {
         const Outcome outcome = run({"api", "--json"});

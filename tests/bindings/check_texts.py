@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""check_texts.py BINDINGS SOURCE FOLDER: every name that the header declares stands in the file of every language, each
+"""check_texts.py BINDINGS API.json FOLDER: every name that the header declares stands in the file of every language, each
 begins with the version, and those that no test compiles say so. Names in the page's examples of these are declared, too."""
 
 import os

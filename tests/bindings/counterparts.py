@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""counterparts.py BINDINGS SOURCE INCLUDE: every public function of the C++ headers has its counterpart in C, called
+"""counterparts.py BINDINGS API.json INCLUDE: every public function of the C++ headers has its counterpart in C, called
 darkroom_<class>_<function>, or the one that is named here, or a reason here why there is none."""
 
 import os

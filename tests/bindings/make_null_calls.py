@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_null_calls.py BINDINGS SOURCE OUT [null_instance]: a program in C that calls every function of darkroom.h with
+"""make_null_calls.py BINDINGS API.json OUT [null_instance]: a program in C that calls every function of darkroom.h with
 nothing: with null pointers and zeroes, which has to be an error or to do nothing, and with zeroed memory and real objects,
 which must not crash. An error is one line that begins with the function's name. `null_instance`: it calls those of
 darkroom_load.h where there is no library, which have to be no error, and to give nothing."""

@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 const Words commands{"render",    "develop",     "probe",    "plan",        "effects",    "devices",
                      "compare",   "info",        "lut info", "lut convert", "lut export", "farm slurm",
                      "farm task", "farm status", "play",     "edit",        "new",        "completion",
-                     "man",       "bake",        "api",      "help"};
+                     "man",       "bake",        "help"};
 
 class CliCompletion : public test::CliFixture {
   protected:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the hands of people who know other command lines type: the same outcome, whichever way they say it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <darkroom/effects.hpp>
@@ -199,6 +200,20 @@ TEST_F(CliHelp, IsShortAndSaysWhereTheRestIs) {
     EXPECT_NE(run({"--help-all"}).out.find("--fail-flip"), std::string::npos);
     expect_refused({"develop", "--help", "blom"}, 1, "--help blom: no such effect, did you mean 'bloom'?");
     expect_refused({"devices", "--help", "bloom"}, 1, "devices has no flags of effects");
+}
+
+TEST_F(CliHelp, ListsWhatUsersNeedAndLeavesTheLabToItsProgram) {
+    std::vector<std::string> names;
+    for (const std::string& line : below(run({"--help"}).out, "Commands:"))
+        if (!line.starts_with(' ')) names.push_back(line.substr(0, line.find(' ')));
+    EXPECT_LE(names.size(), 15U) << fmt::format("{}", fmt::join(names, " "));
+    EXPECT_GE(names.size(), 10U);
+    const Outcome lab = run_lines("darkroom_lab --help");
+    EXPECT_NE(lab.out.find("Usage: darkroom_lab COMMAND\n"), std::string::npos) << lab.out;
+    for (const char* const name : {"api", "capture", "judge"}) {
+        EXPECT_NE(run_lines(fmt::format("darkroom {}", name)).err.find("unknown command"), std::string::npos) << name;
+        EXPECT_NE(lab.out.find(fmt::format("\n  {} ", name)), std::string::npos) << name;
+    }
 }
 
 TEST_F(CliHelp, EveryCommandHasThreeExamplesThatRun) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/cli/lab_support.hpp"
 #include "tests/cli_render/render_cli_support.hpp"
 
 namespace darkroom {
@@ -15,7 +16,7 @@ using nlohmann::json;
 using test::content;
 using test::Outcome;
 
-class CliTemporal : public test::CliRender {
+class CliTemporal : public test::WithLab<test::CliRender> {
   protected:
     /// Two frames at two sizes, of the yard at 48x32.
     [[nodiscard]] Outcome capture(const std::string& folder, std::vector<std::string> flags = {}) const {

@@ -21,7 +21,7 @@ fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export PYTHONDONTWRITEBYTECODE=1 LD_LIBRARY_PATH=${library%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-layouts() { python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$program" "$1"; }
+layouts() { python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$bindings/api.json" "$1"; }
 
 # The first example of the language.
 sed -n "/^\`\`\`$language\$/,/^\`\`\`\$/{/^\`\`\`/d;p}" "$tree/docs/bindings.md" >"$work/example"

@@ -24,7 +24,7 @@ prefix=$work/moved\ here
 for file in bin/darkroom include/darkroom/darkroom.hpp include/darkroom/effects.hpp include/darkroom/darkroom_load.h share/doc/darkroom/LICENSE \
     share/bash-completion/completions/darkroom share/zsh/site-functions/_darkroom \
     share/fish/vendor_completions.d/darkroom.fish share/man/man1/darkroom.1 share/man/man1/darkroom-develop.1 \
-    share/darkroom/bindings/{darkroom_ctypes.py,darkroom.rs,Darkroom.cs,Darkroom.java,darkroom.zig,darkroom.odin}; do
+    share/darkroom/bindings/{api.json,darkroom_ctypes.py,darkroom.rs,Darkroom.cs,Darkroom.java,darkroom.zig,darkroom.odin}; do
     [[ -f $prefix/$file ]] || { echo "$file was not installed" && exit 1; }
 done
 if grep -rlF -e "$tree" -e "$build" "$prefix/include" $(find "$prefix" -name '*.cmake' -o -name '*.pc' | tr ' ' '?'); then

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# lwjgl.sh TREE BINDINGS PROGRAM LIBRARY COMPILER: of Darkroom.java, the structs lie as those of C do, and a host with LWJGL
+# lwjgl.sh TREE BINDINGS LIBRARY COMPILER: of Darkroom.java, the structs lie as those of C do, and a host with LWJGL
 # (examples/Lwjgl.java) makes the picture that the other hosts of docs/hosts.md make. 77: a JDK of 17 and newer, Maven, or in
 # its folder LWJGL and JNA, are not here; nothing is fetched from the net.
 set -euo pipefail
-tree=$1 bindings=$2 program=$3 library=$4 compiler=$5
+tree=$1 bindings=$2 library=$3 compiler=$4
 for tool in javac mvn; do
     command -v $tool >/dev/null || { echo "left out: $tool is not here (openjdk-17-jdk-headless, maven)" && exit 77; }
 done
@@ -27,7 +27,7 @@ classes=$work/jars/\*:$work/classes
 javac -Xlint:all -Werror -cp "$classes" -d "$work/classes" "$bindings/Darkroom.java" "$tree/examples/Lwjgl.java" \
     "$tree/tests/bindings/Layout.java"
 
-PYTHONDONTWRITEBYTECODE=1 python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$program" c >"$work/layout.c"
+PYTHONDONTWRITEBYTECODE=1 python3 "$tree/tests/bindings/make_layouts.py" "$tree/programs/bindings" "$bindings/api.json" c >"$work/layout.c"
 "$compiler" -I "$tree/include" "$work/layout.c" -o "$work/layout"
 "$work/layout" | cut -d' ' -f1,2 | sort >"$work/expected"
 java -cp "$classes" Layout | sort >"$work/layout.txt"

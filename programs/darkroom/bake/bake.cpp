@@ -204,7 +204,7 @@ static Command add_bake(CommandFlags program, std::span<const darkroom::LookEntr
 }
 
 CommandRow bake_command() {
-    return {.names = {"bake"}, .place = 210, .is_of_lab = true, .add = [](const CommandHost& host) {
+    return {.names = {"bake"}, .place = 210, .is_rare = true, .add = [](const CommandHost& host) {
                 return std::vector{add_bake(host.program, host.named)};
             }};
 }

@@ -75,8 +75,8 @@ CommandFlags CommandFlags::add_command(const std::string& name, const std::strin
     return CommandFlags(*app_->add_subcommand(name, doc));
 }
 
-void CommandFlags::put_in_lab() const { app_->group("lab"); }
-bool CommandFlags::is_in_lab(const CLI::App& command) { return command.get_group() == "lab"; }
+void CommandFlags::put_aside() const { app_->group("aside"); }
+bool CommandFlags::is_aside(const CLI::App& command) { return command.get_group() == "aside"; }
 
 Flag CommandFlags::add_option(const std::string& names, std::string& to, const std::string& doc) const {
     return Flag(app_->add_option(names, to, doc));

@@ -66,8 +66,8 @@ class CommandFlags {
     /// Whole command lines, one a line.
     void examples(const std::string& lines) const;
     /// Help names it and tells no more of it.
-    void put_in_lab() const;
-    [[nodiscard]] static bool is_in_lab(const CLI::App& command);
+    void put_aside() const;
+    [[nodiscard]] static bool is_aside(const CLI::App& command);
     /// It only holds others, one of which is asked for.
     void require_command() const;
 

@@ -51,8 +51,8 @@ void end_with_task() {
 
 std::vector<Command> add_commands(const CommandRow& row, const CommandHost& host) {
     std::vector<Command> out = row.add(host);
-    if (row.is_of_lab)
-        for (const Command& command : out) command.flags.put_in_lab();
+    if (row.is_rare)
+        for (const Command& command : out) command.flags.put_aside();
     return out;
 }
 

@@ -74,7 +74,7 @@ bool CommandText::has_effects() const {
 }
 
 std::string CommandText::usage() const {
-    std::string out = name.empty() ? "darkroom" : "darkroom " + name;
+    std::string out = program + (name.empty() ? "" : " " + name);
     if (!children.empty()) return out + " COMMAND";
     for (const FlagText& positional : positionals) {
         const std::string shown = positional.names.front() + (positional.is_repeated ? "..." : "");
@@ -87,8 +87,10 @@ std::string CommandText::usage() const {
 
 CommandText describe(const CLI::App& command) {
     CommandText out{.doc = command.get_description(), .examples = split(command.get_footer(), '\n')};
-    for (const CLI::App* app = &command; app->get_parent() != nullptr; app = app->get_parent())
+    const CLI::App* app = &command;
+    for (; app->get_parent() != nullptr; app = app->get_parent())
         out.name = app->get_name() + (out.name.empty() ? "" : " " + out.name);
+    out.program = app->get_name();
     for (const CLI::Option* const option : command.get_options()) {
         FlagText flag = flag_of(*option);
         (flag.is_positional ? out.positionals : out.flags).push_back(std::move(flag));

@@ -24,7 +24,7 @@ struct FlagText {
 };
 
 struct CommandText {
-    std::string name;  ///< "develop", "lut export"; empty: the program
+    std::string program, name;  ///< name: "develop", "lut export"; empty of the program itself
     std::string doc;
     std::vector<FlagText> positionals, flags;
     std::vector<std::string> examples;        ///< whole command lines

@@ -87,15 +87,15 @@ void print_groups(const CommandText& command, Predicate is_shown) {
 
 void print_children(const CommandText& command) {
     fmt::print("\nCommands:\n");
-    std::vector<std::string> lab;
+    std::vector<std::string> aside;
     for (const CLI::App* const child : command.children)
-        if (CommandFlags::is_in_lab(*child))
-            lab.push_back(child->get_name());
+        if (CommandFlags::is_aside(*child))
+            aside.push_back(child->get_name());
         else
             print_row(child->get_name(), child->get_description());
-    if (!lab.empty())
-        fmt::print("\nFor packages, hosts and who changes Darkroom; `darkroom help COMMAND` tells of each:\n  {}\n",
-                   fmt::join(lab, " "));
+    if (!aside.empty())
+        fmt::print("\nFor packages, hosts and drivers; `darkroom help COMMAND` tells of each:\n  {}\n",
+                   fmt::join(aside, " "));
 }
 
 int print_help(const CommandText& command, bool has_all) {
@@ -198,7 +198,7 @@ std::optional<int> answer_help(const CLI::App& program, std::span<char* const> a
 CommandRow help_command() {
     return {.names = {"help", "completion", "man"}, .place = 130, .add = [](const CommandHost& host) {
                 std::vector out{add_help(host.program), add_completion(host.program), add_man(host.program)};
-                for (std::size_t i = 1; i < out.size(); ++i) out[i].flags.put_in_lab();
+                for (std::size_t i = 1; i < out.size(); ++i) out[i].flags.put_aside();
                 return out;
             }};
 }

@@ -41,7 +41,7 @@ Command add_verify(CommandFlags program, const Verify& verify) {
 }
 
 CommandRow verify_command() {
-    return {.names = {"verify"}, .place = 240, .is_of_lab = true, .add = [](const CommandHost& host) {
+    return {.names = {"verify"}, .place = 240, .is_rare = true, .add = [](const CommandHost& host) {
                 return std::vector{add_verify(
                     host.program, [become = host.become](const VerifyFlags&) { return become("darkroom_verifier"); })};
             }};
