@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 
 #include "compose/chain/frame_check.hpp"
 #include "compose/composer_state.hpp"
@@ -390,5 +391,25 @@ Result<Plan> Composer::rebind(const Device& device) try {
 } catch (...) {
     return caught("rebind");
 }
+
+namespace {
+
+/// docs/embedding.md quotes how it is used.
+[[maybe_unused]] void usage_composer(Composer& composer, VkCommandBuffer commands, const Frame& frame,
+                                     void (*report)(const Error&)) {
+    const darkroom::ImageRef& target = frame.target;
+    auto plan = composer.compile({.max_extent = {3840, 2160},
+                                  .color = {VK_FORMAT_R16G16B16A16_SFLOAT},
+                                  .depth = {VK_FORMAT_D32_SFLOAT},
+                                  .target = {target.format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}});
+    if (!plan) return report(plan.error());
+    std::puts(plan->text().c_str());
+
+    if (auto recorded = composer.record(commands, frame); !recorded) return report(recorded.error());
+    // And where the recording is not submitted:
+    if (auto taken_back = composer.abandon(); !taken_back) return report(taken_back.error());
+}
+
+}  // namespace
 
 }  // namespace darkroom

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <darkroom/composer.hpp>
 #include <darkroom/custom_effect.hpp>
 #include <utility>
 
@@ -42,5 +43,17 @@ Result<CustomEffect> CustomEffect::load(const std::string& file) try {
 } catch (...) {
     return caught("reading an effect");
 }
+
+namespace {
+
+/// docs/embedding.md quotes how it is used.
+[[maybe_unused]] void usage_custom_effect(Composer& composer, void (*report)(const Error&)) {
+    const auto duotone = darkroom::CustomEffect::load("duotone.glsl");
+    if (!duotone) return report(duotone.error());
+    const darkroom::Handle toned = composer.add(duotone->info(), nullptr);  // null: the defaults
+    if (const auto set = composer.set(toned, "amount", 0.6); !set) return report(set.error());
+}
+
+}  // namespace
 
 }  // namespace darkroom

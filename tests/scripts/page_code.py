@@ -10,7 +10,13 @@ from pathlib import Path
 COMPILED = ("README.md", "docs/embedding.md", "docs/interface.md", "docs/looks.md", "docs/console.md",
             "docs/controllers.md", "docs/temporal.md")
 # Page, what its blocks begin with, and where they stand.
-QUOTED = (("docs/embedding.md", "darkroom::Device device = check(", "examples/embed.cpp"),
+QUOTED = (("docs/embedding.md", "const auto device = darkroom::Device::adopt", "engine/gpu/device/adopt.cpp"),
+          ("docs/embedding.md", "auto plan = composer.compile({.max_extent = {3840", "engine/compose/composer_run.cpp"),
+          ("docs/embedding.md", "if (auto taken_back = composer.abandon()", "engine/compose/composer_run.cpp"),
+          ("docs/embedding.md", "const auto duotone = darkroom::CustomEffect::load", "engine/custom/custom_effect.cpp"),
+          ("docs/c.md", "DarkroomDevice device = NULL", "engine/c/usage.c"),
+          ("docs/c.md", "DarkroomParameter intensity", "engine/c/usage.c"),
+          ("docs/c.md", "for (uint32_t i = 0; i < darkroom_effect_count()", "engine/c/usage.c"),
           ("docs/embedding.md", "// Darkroom is told how the images are", "examples/embed.cpp"),
           ("docs/embedding.md", "// @effect duotone", "examples/duotone.glsl"),
           ("docs/hosts.md", "const DarkroomImage picture", "examples/swapchain.c"),
@@ -39,7 +45,7 @@ HOST = """
 #include <darkroom/look.hpp>
 #include <darkroom/temporal_check.hpp>
 namespace page {
-struct Host : darkroom::AdoptDesc { VkPhysicalDevice gpu; std::uint32_t family; VkPhysicalDeviceFeatures2 features; };
+struct Host : darkroom::AdoptDesc {};
 struct Graph { template <class... Any> void barrier(const Any&...) {} };
 template <class... Any> void report(const Any&...);
 template <class... Any> void show(const Any&...);
@@ -69,6 +75,7 @@ extern std::span<const std::byte> kernels, bytes_of_the_file;
 extern std::span<const float> depth_numbers, velocity_numbers;
 extern std::array<float, 2> previous_jitter;
 extern VkPhysicalDeviceFeatures available;
+extern VkPhysicalDeviceFeatures2 features;
 extern VkCommandBuffer commands;
 extern VkExtent2D extent, output, scene, swapchain_extent;
 extern VkImage swapchain_images[3];

@@ -177,4 +177,21 @@ Result<Device> Device::adopt(const AdoptDesc& desc) try {
     return caught("adopting a device");
 }
 
+namespace {
+
+/// docs/embedding.md quotes how it is used.
+[[maybe_unused]] void usage_device(const AdoptDesc& host, const VkPhysicalDeviceFeatures2& features,
+                                   void (*report)(const Error&)) {
+    const auto device = darkroom::Device::adopt({.instance = host.instance,
+                                                 .physical_device = host.physical_device,
+                                                 .device = host.device,
+                                                 .queue_family = host.queue_family,
+                                                 .enabled_features = &features,
+                                                 .get_proc = host.get_proc,
+                                                 .kernels = host.kernels});
+    if (!device) return report(device.error());
+}
+
+}  // namespace
+
 }  // namespace darkroom
