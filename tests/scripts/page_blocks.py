@@ -19,7 +19,7 @@ docs/bindings.md        csharp    BindingsCSharp
 docs/bindings.md        zig,odin  BindingsTexts
 docs/bindings.md        sh        CliPages.Bindings
 docs/c.md               c         PageCode
-docs/c.md               cmake     PageBuilds
+docs/c.md               sh,cmake  PageBuilds
 docs/command_line.md    sh        CliPages.CommandLine
 docs/console.md         cpp       PageCode
 docs/console.md         shown     Console.OutOfRangeIsSetToTheBoundAndSaid
@@ -38,7 +38,8 @@ docs/hosts.md           c         ExampleSwapchain
 docs/hosts.md           cpp       ExampleVma
 docs/hosts.md           go        ExampleCgo
 docs/hosts.md           java      ExampleLwjgl
-docs/hosts.md           rust,toml ExampleAsh
+docs/hosts.md           rust      ExampleAsh
+docs/hosts.md           sh,toml   PageBuilds
 docs/hud.md             xml       CliPages.DocumentsControllersAndCameras
 docs/install.md         sh,cmake  PageBuilds
 docs/interface.md       shown     a picture of wires

@@ -47,21 +47,19 @@ cp "$tree/tests/package/main.c" "$work/project/"
 cd "$work/project"
 {
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(pages LANGUAGES C CXX)\n'
-    for page in install embedding c; do
+    for page in install embedding; do
         awk -v page="$page" '/^```/ { inside = $0 == "```cmake"; number += inside; next }
             inside { print > (page "_" number ".txt") }' "$tree/docs/$page.md"
     done
 } >CMakeLists.txt
-for block in install_*.txt embedding_*.txt c_*.txt; do
+for block in install_*.txt embedding_*.txt; do
     name=${block%.txt}
-    # Another test's: a host that fetches the tree (fetch.sh).
-    ! grep -q FetchContent "$block" || continue
+    # Another test's: a host that fetches the tree (fetch.sh); and below: one that is whole.
+    ! grep -qE 'FetchContent|^project' "$block" || continue
     mkdir "$name"
     ln -s ../looks "$name/looks"
-    source=main.cpp
-    [[ $name != c_* ]] || source=main.c
     {
-        printf 'add_executable(%s ../%s)\n' "$name" "$source"
+        printf 'add_executable(%s ../main.cpp)\n' "$name"
         sed "s|/opt/darkroom|$prefix|; s/\bengine\b/$name/" "$block"
         # What follows in the page presumes what its first block says.
         grep -q target_link_libraries "$block" || printf 'target_link_libraries(%s PRIVATE Darkroom::darkroom)\n' "$name"
@@ -71,10 +69,39 @@ done
 # darkroom_bake looks for the program in the library's folders, then in PATH.
 quietly env CXXFLAGS=-O0 PATH="$work/stage/home/.local/bin:$PATH" cmake -S . -B out -G Ninja
 quietly cmake --build out
-for name in install_1 embedding_1 embedding_3 c_1; do
+for name in install_1 embedding_3; do
     quietly "out/$name/$name"
 done
 [[ -s out/embedding_3/embedding_3.dkb ]] || fail "docs/embedding.md: darkroom_bake made nothing"
+
+# The hosts beside the tree, whole: their files are copied from it, and they make a picture.
+# host PAGE FOLDER FILE KIND: the page's first block of this kind goes to the file, behind the lines that make the folder.
+mkdir "$work/tree"
+ln -s "$tree/examples" "$work/tree/"
+cd "$work/tree"
+host() {
+    local page=$tree/docs/$1.md folder=$2
+    lines_of sh "$page" | grep -E "\.\./$folder\b|^export " >"$work/lines"
+    sed -i "s|/opt/darkroom|$prefix|g" "$work/lines"
+    quietly bash -e <(grep -E '^(mkdir|cargo new)' "$work/lines")
+    awk -v kind="$4" '/^```/ { inside = !done && $0 == "```" kind; done += inside; next } inside' "$page" |
+        sed "s|/opt/darkroom|$prefix|; s/^\[dependencies\]//" >>"$work/$folder/$3"
+    CXXFLAGS=-O0 CFLAGS=-O0 bash -e <(grep -vE '^(mkdir|cargo new)' "$work/lines") >"$work/log" 2>&1 ||
+        { tail -n 40 "$work/log" && fail "docs/$1.md: the host does not build or run"; }
+}
+for page in embedding c; do
+    host $page host$([[ $page == c ]] && echo _c) CMakeLists.txt cmake
+    [[ -s picture.ppm ]] || fail "docs/$page.md: the host writes no picture"
+    rm picture.ppm
+done
+# Where a cargo of 1.82 and newer is, and ash with it: nothing is fetched from the net.
+version=$(cargo --version 2>/dev/null | cut -d' ' -f2) || true
+if printf '1.82\n%s\n' "${version:-0}" | sort -VC && compgen -G "${CARGO_HOME:-$HOME/.cargo}/registry/cache/*/ash-0.38.*" >/dev/null; then
+    export CARGO_NET_OFFLINE=true
+    host hosts host_rust Cargo.toml toml
+    [[ $(tail -n 3 "$work/log") == $'170 170 170\n223 223 223\n250 250 250' ]] || fail "docs/hosts.md: the host in Rust prints other pixels"
+fi
+cd "$work/project"
 
 # And by pkg-config.
 lines_of sh docs/install.md | grep -E '^(export PKG_CONFIG_PATH=|c\+\+ |cc )' >lines || fail "docs/install.md has no pkg-config"
@@ -127,4 +154,4 @@ fi
 lines_of sh docs/python.md | grep -q -- "$(grep -oE 'pip wheel( -q)? --no-build-isolation --no-deps' "$tree/tests/scripts/python.sh" | sed 's/ -q//')" ||
     fail "docs/python.md makes its wheel otherwise than tests/scripts/python.sh"
 [[ $named -ge 10 ]] || fail "pages name $named options, targets and packages"
-echo "page_builds: $installed lines install, $(ls -d install_?/ embedding_?/ c_?/ | wc -l) blocks of CMake build, $named names are there"
+echo "page_builds: $installed lines install, $(ls -d install_?/ embedding_?/ ../host*/ | wc -l) blocks of CMake build, $named names are there"
