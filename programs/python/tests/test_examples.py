@@ -48,7 +48,7 @@ class Page(Case):
                 os.mkdir("samples")
                 darkroom.files.write_frame("samples/window.exr", darkroom.Frame(light()))
                 for block in blocks:
-                    names = {"frames": [light(), light()], "array": light()}
+                    names = {}
                     exec(compile(block, "docs/python.md", "exec"), names)
                     self.assertEqual(names["picture"].dtype, numpy.uint8)
                     self.assertEqual(names["glowing"].shape, light().shape)
