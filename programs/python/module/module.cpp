@@ -5,11 +5,28 @@
 #include <pybind11/pybind11.h>
 
 #include <darkroom/version.hpp>
+#include <string>
 
 #include "parts.hpp"
 
+namespace {
+
+/// An older pybind11 looks for the types of numpy 2 at the places that those of numpy 1 have, and finds none.
+void check_numpy() {
+#if PYBIND11_VERSION_HEX < 0x020C0000
+    const auto numpy = pybind11::module_::import("numpy").attr("__version__").cast<std::string>();
+    if (!numpy.starts_with("1."))
+        throw pybind11::import_error(fmt::format("darkroom was built with pybind11 {}.{} for numpy 1, and numpy {} is "
+                                                 "here: pip install 'numpy<2', or build it with pybind11 2.12 or newer",
+                                                 PYBIND11_VERSION_MAJOR, PYBIND11_VERSION_MINOR, numpy));
+#endif
+}
+
+}  // namespace
+
 PYBIND11_MODULE(_engine, module) {
     using namespace darkroom;
+    check_numpy();
     module.attr("version") = fmt::format("{}.{}.{}", version_major, version_minor, version_patch);
     python::add_effects(module);
     python::add_looks(module);
