@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/files.hpp"
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -86,11 +87,13 @@ class CubeParser {
                 out_.comments.emplace_back(trimmed(one_line(line.substr(1))));
             return {};
         }
-        if (line == "TITLE" || (line.starts_with("TITLE") && blanks.find(line[5]) != std::string_view::npos))
-            return read_title(trimmed(line.substr(5)));
         const std::vector<std::string_view> words = words_of(line);
-        if (line[0] < 'A' || line[0] > 'Z') return read_row(words);
-        const auto found = std::ranges::find(keywords_, words[0], &Keyword::name);
+        // Some programs write small letters, which OpenColorIO takes, too.
+        const std::string word = lower(words[0]);
+        if (word == "title") return read_title(trimmed(line.substr(5)));
+        const bool is_word = (line[0] >= 'A' && line[0] <= 'Z') || word.find('_') != std::string::npos;
+        if (!is_word) return read_row(words);
+        const auto found = std::ranges::find(keywords_, word, [](const Keyword& known) { return lower(known.name); });
         if (found == keywords_.end()) return refuse_unknown(words[0]);
         if (found->line != 0)
             return refuse(fmt::format("{}: is in line {} already, once is allowed", words[0], found->line));
@@ -160,6 +163,9 @@ class CubeParser {
         return read_range(values, out_.table.shaper_min, out_.table.shaper_max);
     }
     Result<> read_cube_range(Words values) { return read_range(values, out_.table.min, out_.table.max); }
+    Result<> read_video_range(Words values) {
+        return values.empty() ? Result<>() : refuse(fmt::format("{} values: none are expected", values.size()));
+    }
 
     [[nodiscard]] std::uint64_t rows_wanted() const {
         const std::uint64_t edge = out_.table.size;
@@ -224,11 +230,31 @@ class CubeParser {
         return {};
     }
 
+    /// A picture's code values are of the full range, where 0 is black and 1 is white; of video they are 64 and 940 of
+    /// 1023. What a table says of those becomes what it does to these.
+    void leave_video_range() {
+        const auto full = [](float& code) { code = static_cast<float>((double{code} * 1023 - 64) / (940 - 64)); };
+        ColorTable& table = out_.table;
+        if (has("LUT_IN_VIDEO_RANGE")) {
+            out_.comments.emplace_back(
+                "Inputs were of video range (LUT_IN_VIDEO_RANGE), and are of the full range now");
+            for (auto* const ends : table.shaper_size > 0 ? std::array{&table.shaper_min, &table.shaper_max}
+                                                          : std::array{&table.min, &table.max})
+                std::ranges::for_each(*ends, full);
+        }
+        if (has("LUT_OUT_VIDEO_RANGE")) {
+            out_.comments.emplace_back(
+                "Entries were of video range (LUT_OUT_VIDEO_RANGE), and are of the full range now");
+            std::ranges::for_each(table.size > 0 ? table.cube : table.shaper, full);
+        }
+    }
+
     Result<TableFile> finish() {
         if (rows_ == 0) DARKROOM_TRY(check_header());
         if (rows_ < rows_wanted())
             return refuse(
                 fmt::format("the file ends after {} entries: {} asks for {}", rows_, size_text(), rows_wanted()));
+        leave_video_range();
         return std::move(out_);
     }
 
@@ -236,12 +262,14 @@ class CubeParser {
     std::size_t line_ = 0, title_line_ = 0;
     std::uint64_t rows_ = 0;
     std::array<float, 3> domain_min_{0, 0, 0}, domain_max_{1, 1, 1};
-    std::array<Keyword, 6> keywords_{{{"LUT_1D_SIZE", &CubeParser::read_shaper_size},
+    std::array<Keyword, 8> keywords_{{{"LUT_1D_SIZE", &CubeParser::read_shaper_size},
                                       {"LUT_3D_SIZE", &CubeParser::read_cube_size},
                                       {"LUT_1D_INPUT_RANGE", &CubeParser::read_shaper_range},
                                       {"LUT_3D_INPUT_RANGE", &CubeParser::read_cube_range},
                                       {"DOMAIN_MIN", &CubeParser::read_domain_min},
-                                      {"DOMAIN_MAX", &CubeParser::read_domain_max}}};
+                                      {"DOMAIN_MAX", &CubeParser::read_domain_max},
+                                      {"LUT_IN_VIDEO_RANGE", &CubeParser::read_video_range},
+                                      {"LUT_OUT_VIDEO_RANGE", &CubeParser::read_video_range}}};
     TableFile out_;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Files of colour tables in the text format .cube: Adobe, "Cube LUT Specification", version 1.0, 2013, and the form
-// with a shaper before the cube that DaVinci Resolve writes (LUT_1D_INPUT_RANGE, LUT_3D_INPUT_RANGE).
+// with a shaper before the cube that DaVinci Resolve writes (LUT_1D_INPUT_RANGE, LUT_3D_INPUT_RANGE), whose numbers may
+// be codes of video (LUT_IN_VIDEO_RANGE, LUT_OUT_VIDEO_RANGE).
 
 #include <cstdint>
 #include <darkroom/resource.hpp>

@@ -122,6 +122,41 @@ TEST(TablesCube, TheRangeOfATableThatIsNotThereIsRead) {
     EXPECT_EQ(domain.max, (Three{3, 3, 3}));
 }
 
+// Resolve's words: 64 and 940 of 1023 are black and white of what goes in, or of what comes out.
+TEST(TablesCube, NumbersOfVideoBecomeThoseOfTheFullRange) {
+    const auto looked_up = [](const std::string& words, double code) {
+        const Result<TableFile> file = parse_cube("LUT_3D_SIZE 2\n" + words + identity_rows, "a.cube");
+        EXPECT_TRUE(file) << file.error().text;
+        return file ? evaluate(file->table, {code, code, code})[1] : -1;
+    };
+    const auto video = [](double code) { return (64 + 876 * code) / 1023; };
+    for (const double code : {0.0, 0.25, 0.5, 1.0}) {
+        EXPECT_NEAR(looked_up("", code), code, 1e-6);
+        EXPECT_NEAR(looked_up("LUT_IN_VIDEO_RANGE\n", code), video(code), 1e-6);
+        EXPECT_NEAR(looked_up("LUT_IN_VIDEO_RANGE\nlut_out_video_range\n", code), code, 1e-6);
+        EXPECT_NEAR(video(looked_up("LUT_OUT_VIDEO_RANGE\n", code)), code, 1e-6);
+    }
+    // Of two tables the first has the input, the last the output.
+    const Result<TableFile> both = parse_cube(
+        "LUT_1D_SIZE 2\nLUT_3D_SIZE 2\nLUT_IN_VIDEO_RANGE\nLUT_OUT_VIDEO_RANGE\n0 0 0\n1 1 1\n" + identity_rows,
+        "a.cube");
+    ASSERT_TRUE(both) << both.error().text;
+    EXPECT_EQ(both->table.shaper, (std::vector<float>{0, 0, 0, 1, 1, 1}));
+    EXPECT_EQ(both->table.max, (std::array{1.0f, 1.0f, 1.0f}));
+    EXPECT_EQ(both->comments.size(), 2U) << "what is changed is told";
+    EXPECT_LE(test::distance(evaluate(both->table, {0, 0.5, 1}), {0, 0.5, 1}), 1e-6);
+    EXPECT_EQ(error_of("LUT_3D_SIZE 2\nLUT_IN_VIDEO_RANGE 1\n"), "a.cube:2: 1 values: none are expected");
+}
+
+TEST(TablesCube, KeywordsMayHaveSmallLetters) {
+    const Result<TableFile> file =
+        parse_cube("title \"a\"\nlut_3d_size 2\nDomain_Max 2 2 2\n" + identity_rows, "a.cube");
+    ASSERT_TRUE(file) << file.error().text;
+    EXPECT_EQ(file->title, "a");
+    EXPECT_EQ(file->table.max, (std::array{2.0f, 2.0f, 2.0f}));
+    EXPECT_TRUE(error_of("lut_3d_sice 2\n").starts_with("a.cube:1: unknown keyword 'lut_3d_sice'"));
+}
+
 TEST(TablesCube, WhatIsWrittenReadsBackBitForBit) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> any(-3, 60000);

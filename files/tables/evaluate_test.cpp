@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "tables/evaluate.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -132,31 +136,90 @@ ResourceImage counted(std::uint32_t width, std::uint32_t height) {
 }
 
 TEST(TablesImage, StripsAndHaldClutsAreCubes) {
-    const auto entry = [](const ColorTable& table, std::size_t r, std::size_t g, std::size_t b) {
-        return table.cube[((b * table.size + g) * table.size + r) * 3];
+    const auto entry = [](const ImageTable& found, std::size_t r, std::size_t g, std::size_t b) {
+        return found.table.cube[((b * found.table.size + g) * found.table.size + r) * 3];
     };
     // Slices side by side, below each other, and a HaldCLUT of level 2.
-    const Result<ColorTable> row = table_of_image(counted(256, 16)), column = table_of_image(counted(16, 256)),
+    const Result<ImageTable> row = table_of_image(counted(256, 16)), column = table_of_image(counted(16, 256)),
                              hald = table_of_image(counted(8, 8));
     ASSERT_TRUE(row && column && hald);
-    EXPECT_EQ(row->size, 16u);
-    EXPECT_EQ(column->size, 16u);
-    EXPECT_EQ(hald->size, 4u);
+    EXPECT_EQ(row->table.size, 16u);
+    EXPECT_EQ(column->table.size, 16u);
+    EXPECT_EQ(hald->table.size, 4u);
     EXPECT_EQ(entry(*row, 3, 5, 7), 5 * 256 + 7 * 16 + 3);
     EXPECT_EQ(entry(*column, 3, 5, 7), (7 * 16 + 5) * 16 + 3);
     EXPECT_EQ(entry(*hald, 3, 2, 1), 16 + 2 * 4 + 3);
-    EXPECT_EQ(row->cube[1] - row->cube[0], 0.25f);
+    EXPECT_EQ(row->table.cube[1] - row->table.cube[0], 0.25f);
+}
+
+/// Code values of 8 bits, as painters' files have them, of what `layout` says lies at a pixel.
+ResourceImage painted(std::uint32_t width, std::uint32_t height, std::uint32_t edge,
+                      const std::function<std::array<double, 3>(std::uint32_t x, std::uint32_t y)>& entry_at,
+                      const std::function<TableColor(const TableColor&)>& graded) {
+    ResourceImage out{width, height, {}};
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            TableColor color = entry_at(x, y);
+            for (double& value : color) value /= edge - 1.0;
+            color = graded(color);
+            for (const double value : color)
+                out.rgba.push_back(static_cast<float>(std::round(std::clamp(value, 0.0, 1.0) * 255) / 255));
+            out.rgba.push_back(1);
+        }
+    return out;
+}
+
+TEST(TablesImage, SquaresAreTheSmootherOfTilesAndHaldCluts) {
+    using Grade = std::function<TableColor(const TableColor&)>;
+    const std::vector<Grade> grades{
+        [](const TableColor& c) { return c; },
+        [](const TableColor& c) { return TableColor{1 - c[0], c[1] * c[1], std::sqrt(c[2])}; },
+        [](const TableColor& c) {
+            const double grey = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+            return TableColor{grey, 0.8 * grey, 0.6 * grey};
+        },
+        [](const TableColor& c) { return TableColor{c[2], c[2], c[2]}; },
+        [](const TableColor& c) { return TableColor{c[1], c[1], c[1]}; },
+        [](const TableColor& c) { return TableColor{std::floor(c[0] * 4) / 4, c[1] > 0.5 ? 1.0 : 0, c[2]}; }};
+    for (const std::uint32_t level : {2u, 4u, 8u}) {
+        const std::uint32_t edge = level * level, side = edge * level;
+        const auto tile_at = [&](std::uint32_t x, std::uint32_t y) {
+            return std::array<double, 3>{double(x % edge), double(y % edge), double(y / edge * level + x / edge)};
+        };
+        const auto hald_at = [&](std::uint32_t x, std::uint32_t y) {
+            const std::uint32_t n = y * side + x;
+            return std::array<double, 3>{double(n % edge), double(n / edge % edge), double(n / edge / edge)};
+        };
+        for (const Grade& grade : grades) {
+            const auto found = table_of_image(painted(side, side, edge, tile_at, grade));
+            const auto hald = table_of_image(painted(side, side, edge, hald_at, grade));
+            ASSERT_TRUE(found && hald);
+            EXPECT_EQ(found->layout, fmt::format("{0}x{0} slices of {1}x{1}", level, edge)) << &grade - grades.data();
+            EXPECT_EQ(hald->layout, "HaldCLUT") << level << " " << &grade - grades.data();
+            EXPECT_EQ(found->table.cube, hald->table.cube);
+        }
+    }
+    // Two rows of slices, in no square.
+    const auto rows = table_of_image(painted(
+        256, 128, 32,
+        [](std::uint32_t x, std::uint32_t y) {
+            return std::array<double, 3>{double(x % 32), double(y % 32), double(y / 32 * 8 + x / 32)};
+        },
+        grades[1]));
+    ASSERT_TRUE(rows);
+    EXPECT_EQ(rows->layout, "8x4 slices of 32x32");
+    EXPECT_LE(test::distance(evaluate(rows->table, {0.25, 0.5, 1}), TableColor{0.75, 0.25, 1}), 0.005);
 }
 
 TEST(TablesImage, OtherSizesAndNumbersAreRefused) {
     for (const auto& [width, height] : {std::pair(0u, 0u), {1u, 1u}, {2u, 2u}, {16u, 255u}, {9u, 9u}, {256u, 15u}}) {
-        const Result<ColorTable> table = table_of_image(counted(width, height));
+        const Result<ImageTable> table = table_of_image(counted(width, height));
         ASSERT_FALSE(table) << width << "x" << height;
         EXPECT_NE(table.error().text.find(fmt::format("{}x{}", width, height)), std::string::npos);
     }
     ResourceImage broken = counted(4, 2);
     broken.rgba[9] = std::numeric_limits<float>::quiet_NaN();
-    const Result<ColorTable> table = table_of_image(broken);
+    const Result<ImageTable> table = table_of_image(broken);
     ASSERT_FALSE(table);
     EXPECT_NE(table.error().text.find("(2, 0) is nan"), std::string::npos) << table.error().text;
 }

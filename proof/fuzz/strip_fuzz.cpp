@@ -26,11 +26,12 @@ std::string run(std::string_view input) {
     if (std::uint64_t{*edge} * *edge * *edge != count / 4) return fmt::format("an edge of {}", *edge);
     if (count > max_numbers) return {};
     for (std::size_t i = 0; i < count; ++i) image.rgba.push_back(bytes.is_empty() ? 0.5F : bytes.number());
-    const Result<ColorTable> table = table_of_image(image);
+    const Result<ImageTable> found = table_of_image(image);
     const bool is_finite = std::ranges::all_of(image.rgba, [](float value) { return std::isfinite(value); });
-    if (!table) return is_finite ? table.error().text : wrong_error(table.error());
-    if (table->size != *edge || table->cube.size() != count / 4 * 3) return "a table has another size than its edge";
-    return std::ranges::all_of(table->cube, [](float value) { return std::isfinite(value); }) ? "" : "it is not finite";
+    if (!found) return is_finite ? found.error().text : wrong_error(found.error());
+    const ColorTable& table = found->table;
+    if (table.size != *edge || table.cube.size() != count / 4 * 3) return "a table has another size than its edge";
+    return std::ranges::all_of(table.cube, [](float value) { return std::isfinite(value); }) ? "" : "it is not finite";
 }
 
 std::vector<std::string> seeds() {

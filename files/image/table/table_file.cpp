@@ -77,10 +77,11 @@ Result<FoundTable> read_picture_table(const fs::path& path) {
         return edge ? Result<>() : failure(edge.error());
     };
     DARKROOM_TRY_VALUE(const ResourceImage image, read_numbers(path, check));
-    Result<ColorTable> table = table_of_image(image);
-    if (!table)
-        return failure(Error{table.error().fault, fmt::format("{}: {}", printable(path.string()), table.error().text)});
-    return FoundTable{.file = {.table = std::move(*table)}, .format = "a picture"};
+    Result<ImageTable> found = table_of_image(image);
+    if (!found)
+        return failure(Error{found.error().fault, fmt::format("{}: {}", printable(path.string()), found.error().text)});
+    return FoundTable{.file = {.table = std::move(found->table), .comments = {"A picture: " + found->layout}},
+                      .format = "a picture"};
 }
 
 }  // namespace
