@@ -23,4 +23,4 @@ class Host(ConanFile):
 
     def test(self):
         if can_run(self):
-            self.run(Path(self.cpp.build.bindir) / "host", env="conanrun")
+            self.run(f'"{Path(self.build_folder, self.cpp.build.bindir, "host")}"', env="conanrun")
