@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 
@@ -69,11 +70,6 @@ Composer::State::State(std::shared_ptr<gpu::Context> device_context, const Compo
                                                desc.max_threads > 0 && !context->is_assumed && !context->compiles_only);
 }
 
-Composer::State::~State() {
-    worker->stop();  // its task works on all of this
-    while (retired != nullptr) delete std::exchange(retired, retired->next_retired);
-}
-
 Result<> Composer::State::check_device() const {
     if (context->compiles_only)
         return user_error(
@@ -127,7 +123,6 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
                                         .entries = std::move(snapshot.entries)},
                                        snapshot.values);
     if (made) program = std::move(own);
-    histories.trim();
     context->save_pipeline_cache_if_grown();
     return made;
 }
@@ -147,35 +142,24 @@ void Composer::State::take_ready(const Frame& frame) {
     if (newer) take(std::move(newer));
 }
 
-void Composer::State::retire(std::unique_ptr<compose::Chain> old, std::uint32_t recordings) {
-    old->recordings_left = recordings;
-    old->next_retired = std::exchange(retired, old.get());
-    static_cast<void>(old.release());
-}
-
 void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
-    // With more views than before, more recordings may be made before the oldest one has finished.
-    const std::uint32_t recordings = std::max(chain ? chain->slots() : 0u, newer->slots());
-    for (compose::Chain* old = retired; old != nullptr; old = old->next_retired)
-        old->recordings_left = std::max(old->recordings_left, recordings);
-    if (chain) retire(std::move(chain), recordings);
+    // With more views than before, more recordings may be made before the oldest one has finished. Until that many are
+    // made, one of another view may go on from what an older plan left, and then has as long to finish.
+    const std::uint32_t recordings = 2 * std::max(chain ? chain->slots() : 0u, newer->slots());
+    for (Retired& old : retired) old.recordings_left = std::max(old.recordings_left, recordings);
+    if (chain) retired.push_back({std::move(chain), recordings});
     chain = std::move(newer);
 }
 
-/// By the contract the recordings that used a retired chain have finished once as many newer ones are made.
 void Composer::State::put_away_retired() {
-    for (compose::Chain** link = &retired; *link != nullptr;) {
-        compose::Chain* const old = *link;
-        if (old->recordings_left > 0) {
-            link = &old->next_retired;
-            continue;
-        }
-        compose::Chain* const after = old->next_retired;
-        std::unique_ptr<compose::Garbage> gone(old);
-        worker->discard(gone);
-        if (gone) return static_cast<void>(gone.release());  // until the next recording
-        *link = after;
-    }
+    for (Retired& old : retired)
+        if (old.recordings_left == 0) worker->discard(old.chain);  // or the next recording does
+    std::erase_if(retired, [](const Retired& old) { return old.chain == nullptr; });
+}
+
+void Composer::State::make_room_for_retired() {
+    constexpr std::size_t live = 4;  // what runs, what the host was told of, what is ready, what is being made
+    retired.reserve(retired.size() + live);
 }
 
 std::unique_lock<std::mutex> Composer::State::stop_compiling() {
@@ -183,7 +167,7 @@ std::unique_lock<std::mutex> Composer::State::stop_compiling() {
     {
         const std::scoped_lock lock(pending_mutex);
         ++requests;
-        is_compiling = false;
+        later.reset();
         pending_error.reset();
     }
     std::unique_lock lock(compile_mutex);
@@ -214,6 +198,7 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const try {
 Result<Plan> Composer::State::compile(const CompileDesc& wanted) {
     DARKROOM_TRY(check_device());
     DARKROOM_TRY_VALUE(auto made, snapshot(wanted));
+    make_room_for_retired();
     const auto lock = stop_compiling();
     DARKROOM_TRY_VALUE(auto newer, make_chain(std::move(made)));
     Plan plan = newer->plan();
@@ -227,15 +212,20 @@ Result<Plan> Composer::compile(const CompileDesc& desc) try { return state_->com
 
 std::optional<CompileDesc> Composer::State::last_desc() const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready || told) && later) return later->desc;
-    return chain ? std::optional(chain->compiled_for()) : std::nullopt;
+    if (later) return later->desc;
+    for (const auto* const plan : {&ready, &told, &chain})
+        if (*plan) return (*plan)->compiled_for();
+    return std::nullopt;
 }
 
 bool Composer::State::is_mixable(const plan::Entry& entry) const {
     const std::scoped_lock lock(pending_mutex);
-    if ((is_compiling || ready || told) && later && std::ranges::count(later->unmixed, entry.id) > 0) return false;
-    const auto place = chain ? chain->index_of(entry.id) : std::nullopt;
-    return !place || chain->program()->program.is_mixable[*place];
+    const std::array plans{&ready, &told, &chain};
+    return !(later && std::ranges::count(later->unmixed, entry.id) > 0) &&
+           std::ranges::all_of(plans, [&](const auto* plan) {
+               const auto place = *plan ? (*plan)->index_of(entry.id) : std::nullopt;
+               return !place || (*plan)->program()->program.is_mixable[*place];
+           });
 }
 
 void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
@@ -256,7 +246,7 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
     std::unique_ptr<compose::Chain> older;
     const std::scoped_lock guard(pending_mutex);
     if (number != requests) return;
-    is_compiling = false;
+    later.reset();
     if (!made) {
         pending_error = std::move(made).error();
         return;
@@ -269,6 +259,7 @@ Result<> Composer::compile_later(const CompileDesc& desc) try {
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     State& state = *state_;
+    state.make_room_for_retired();
     State::Later later{.desc = desc};
     for (const plan::Entry& entry : snapshot->values)
         if (!plan::is_merged(entry)) later.unmixed.push_back(entry.id);
@@ -284,7 +275,6 @@ Result<> Composer::compile_later(const CompileDesc& desc) try {
     {
         const std::scoped_lock lock(state.pending_mutex);
         request->number = ++state.requests;
-        state.is_compiling = true;
         state.later = std::move(later);
         state.pending_error.reset();
     }
@@ -301,7 +291,7 @@ Result<> Composer::compile_later(const CompileDesc& desc) try {
 
 PendingCompile Composer::pending() const try {
     const std::scoped_lock lock(state_->pending_mutex);
-    return {.is_pending = state_->is_compiling || state_->ready || state_->told,
+    return {.is_pending = state_->later || state_->ready || state_->told,
             .is_ready = state_->ready || state_->told,
             .error = state_->pending_error};
 } catch (...) {
@@ -325,7 +315,7 @@ const Plan* Composer::coming_plan() {
     }
     if (newer) {
         // The host may still read what it was told before.
-        if (state.told) state.retire(std::move(state.told), 0);
+        if (state.told) state.retired.push_back({std::move(state.told)});
         state.told = std::move(newer);
     }
     return state.told ? &state.told->plan() : nullptr;
@@ -336,13 +326,13 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
     State& state = *state_;
     state.take_ready(frame);
     if (!state.chain) return user_error("record: the composer has no plan; compile it first");
-    if (state.retired != nullptr) state.put_away_retired();
+    state.put_away_retired();
     state.last = plan::moment_of(frame.time, frame.camera);
     if (state.is_any_waiting) state.start_pulses(frame.time);
     auto ok = state.chain->record(commands, frame);
     // One that the worker had no room for has none left already.
-    for (compose::Chain* old = state.retired; ok && old != nullptr; old = old->next_retired)
-        if (old->recordings_left > 0) --old->recordings_left;
+    for (State::Retired& old : state.retired)
+        if (ok && old.recordings_left > 0) --old.recordings_left;
     state.record_microseconds =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     return ok;
@@ -353,7 +343,7 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
 Result<> Composer::abandon() try {
     if (!state_->chain || !state_->chain->abandon())
         return user_error("abandon: the composer has no last recording that could be taken back");
-    for (compose::Chain* old = state_->retired; old != nullptr; old = old->next_retired) ++old->recordings_left;
+    for (State::Retired& old : state_->retired) ++old.recordings_left;
     return {};
 } catch (...) {
     return caught("abandon");

@@ -21,7 +21,6 @@ struct Composer::State {
     State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc);
     State(const State&) = delete;
     State& operator=(const State&) = delete;
-    ~State();
 
     // The stack; composer.cpp.
     [[nodiscard]] std::size_t index_of(Handle handle) const;  ///< size() if it names no entry
@@ -66,9 +65,10 @@ struct Composer::State {
     /// The plan that is ready, if this frame is for it. Never waits.
     void take_ready(const Frame& frame);
     void take(std::unique_ptr<compose::Chain> newer);
-    /// Until so many more recordings are made.
-    void retire(std::unique_ptr<compose::Chain> old, std::uint32_t recordings);
+    /// Of those that no recording needs any more.
     void put_away_retired();
+    /// For a plan that is about to be made, so that record() allocates nothing when it takes it.
+    void make_room_for_retired();
 
     std::shared_ptr<gpu::Context> context;
     ComposerDesc desc;
@@ -79,7 +79,12 @@ struct Composer::State {
     std::unique_ptr<compose::Chain> chain;
     std::unique_ptr<compose::Chain> told;  ///< of a host that asks first: what coming_plan() showed it, for record()
     bool asks_first = false;
-    compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned
+    /// A plan that a newer one replaced, until so many more recordings are made.
+    struct Retired {
+        std::unique_ptr<compose::Garbage> chain;
+        std::uint32_t recordings_left = 0;
+    };
+    std::vector<Retired> retired;
     double record_microseconds = 0;
     plan::Moment last;            ///< of the last record
     bool is_any_waiting = false;  ///< has a pulse been fired that no record has seen?
@@ -88,19 +93,17 @@ struct Composer::State {
     graph::HistoryPool histories;
     std::shared_ptr<compose::StackProgram> program;  ///< of the last compile
 
-    mutable std::mutex pending_mutex;  ///< guards the next five; record() tries it and never waits
+    mutable std::mutex pending_mutex;  ///< guards the next four; record() tries it and never waits
     std::uint64_t requests = 0;
-    /// What the last compile_later() was asked for.
     struct Later {
         CompileDesc desc;
         std::vector<std::uint32_t> unmixed{};  ///< entries whose result nobody merges
     };
-    std::optional<Later> later;
-    bool is_compiling = false;
+    std::optional<Later> later;  ///< what compile_later() is making
     std::optional<Error> pending_error;
     std::unique_ptr<compose::Chain> ready;  ///< for record() to take
 
-    std::unique_ptr<compose::Worker> worker;
+    std::unique_ptr<compose::Worker> worker;  ///< the last member, since its task works on all of this
 };
 
 }  // namespace darkroom

@@ -139,6 +139,12 @@ class Compiler {
         solution.versions = declaration_.versions;
         solution.import_count = declaration_.import_count;
         solution.history_count = declaration_.history_count;
+        solution.history_mips.resize(solution.history_count);
+        for (const Image& image : solution.images) {
+            if (!image.is_previous) continue;
+            const MipMask read = needs_.mips[image.versions.front()];
+            solution.history_mips[image.history_index] = read != 0 ? read : all_mips(image.desc.mip_levels);
+        }
         for (std::size_t pass = 0; pass < declaration_.passes.size(); ++pass) {
             const PassRecord& record = declaration_.passes[pass];
             if (!needs_.passes[pass]) {
@@ -291,9 +297,10 @@ class Compiler {
         for (Slot& slot : solution_->slots) {
             if (slot.first_pass == none) slot.first_pass = 0;
             if (slot.kind != Slot::Kind::History) continue;
-            // A reset clears. What another plan makes of the history is not known here, so all plans leave it in the
-            // layout that most readers want.
-            slot.usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+            // A reset clears, and other images of it are copied. What another plan makes of the history is not known
+            // here, so all plans leave it in the layout that most readers want.
+            slot.usage |=
+                VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
             slot.rest_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         }
         return check_imports();

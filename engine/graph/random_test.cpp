@@ -34,6 +34,9 @@ void for_each_case(std::uint32_t count, const std::function<void(Case&)>& body) 
         Case item{seed, std::move(*compiled), {}};
         for (std::uint32_t i = 0; i < import_count; ++i)
             item.imports.push_back(host_state(layouts[(seed + i) % layouts.size()]));
+        // Some hosts place a barrier in front of a recording, and none behind it.
+        for (std::uint32_t i = 0; i < import_count; ++i)
+            if ((seed / 4 + i) % 3 == 0) item.imports[i].stages = item.imports[i].access = 0;
         body(item);
     }
     ASSERT_EQ(found, count) << "of " << seed << " graphs too few compile";

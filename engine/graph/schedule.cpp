@@ -66,6 +66,8 @@ bool advance(MipState& state, const Wanted& wanted, Barrier& barrier) {
     barrier.new_layout = wanted.layout;
     if (wanted.is_write || changes_layout) {
         wait_for_all(state, barrier);
+        // The host has waited for it, by a barrier that these stages come after.
+        if (!has_past) barrier.source_stages = wanted.stages;
     } else {
         barrier.source_stages = state.write_stages;
         barrier.source_access = state.write_access;
@@ -119,14 +121,16 @@ ImportState state_of(const Slot& slot, std::span<const ImportState> imports) {
 
 }  // namespace
 
-std::optional<Barrier> barrier_of_unused(const ImportState& host) {
+std::optional<Barrier> barrier_of_unused(const ImportState& host, const ImageUses& uses) {
     const bool stays = host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED || host.final_layout == host.layout;
+    // What the host wrote may be seen by the stages that it waited for, and by no others: we go on from those.
+    const bool is_seen = host.stages == VK_PIPELINE_STAGE_2_NONE;
+    const VkPipelineStageFlags2 seen_by = uses.stages != 0 ? uses.stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     // Texels that nobody wrote since wait for nobody who only reads them.
-    const bool is_waited_for = host.stages != VK_PIPELINE_STAGE_2_NONE &&
-                               host.final_stages != VK_PIPELINE_STAGE_2_NONE &&
-                               ((host.access | host.final_access) & all_writes) != 0;
+    const bool is_waited_for = host.final_stages != VK_PIPELINE_STAGE_2_NONE &&
+                               (is_seen || ((host.access | host.final_access) & all_writes) != 0);
     if (host.layout == VK_IMAGE_LAYOUT_UNDEFINED ? stays : stays && !is_waited_for) return std::nullopt;
-    return Barrier{.source_stages = host.stages,
+    return Barrier{.source_stages = is_seen ? seen_by : host.stages,
                    .target_stages = host.final_stages,
                    .source_access = host.access & all_writes,
                    .target_access = host.final_access,
@@ -269,14 +273,15 @@ std::uint32_t Schedule::State::last_of(std::uint32_t history) const {
 }
 
 bool Schedule::State::writes_history(std::uint32_t history) const {
-    bool is_written = false;
-    for (std::uint32_t version = last_of(history); version != none; version = solution->versions[version].replaced) {
+    MipMask missing = solution->history_mips[history];
+    for (std::uint32_t version = last_of(history); version != none && missing != 0;
+         version = solution->versions[version].replaced) {
         const VersionRecord& record = solution->versions[version];
-        if (record.producer == none || !is_on(record.gate)) continue;
+        if (record.producer == none || !is_on(record.gate) || (record.mips & missing) == 0) continue;
         if (is_live[record.producer] == 0) return false;
-        is_written = true;
+        if (!record.keeps_content) missing &= ~record.mips;
     }
-    return is_written;
+    return missing == 0;
 }
 
 /// A history whose previous image is read needs its current one written. True if that is news.
@@ -425,7 +430,7 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
             const MipState& state = mips[solution->first_mip[index] + level];
             Barrier barrier{.slot = index, .mips = {level, 1}, .is_depth_alone = is_depth_alone[index] != 0};
             if (is_import && !state.is_touched) {
-                if (const auto left = barrier_of_unused(host)) {
+                if (const auto left = barrier_of_unused(host, slot.uses)) {
                     barrier = *left;
                     barrier.slot = index;
                     barrier.mips = {level, 1};

@@ -31,8 +31,9 @@ struct Barrier {
     bool is_depth_alone = false;
 };
 
-/// What leaves an image that no pass uses as its host asks; none: it is so already.
-[[nodiscard]] std::optional<Barrier> barrier_of_unused(const ImportState& host);
+/// What leaves an image that no pass uses as its host asks; none: it is so already. `uses`: those that the plan has for
+/// it in other frames, if any.
+[[nodiscard]] std::optional<Barrier> barrier_of_unused(const ImportState& host, const ImageUses& uses = {});
 
 struct Step {
     std::uint32_t pass = 0;  ///< index into Compiled::passes()

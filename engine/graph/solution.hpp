@@ -126,6 +126,7 @@ struct Solution {
     std::uint32_t import_count = 0;
     std::uint32_t history_count = 0;
     std::vector<std::uint32_t> final_history_version;  ///< per history: what the next frame gets as previous
+    std::vector<MipMask> history_mips;                 ///< per history: levels that must be written; those read, if any
     VkDeviceSize transient_bytes = 0;
     VkDeviceSize transient_bytes_unaliased = 0;
     VkDeviceSize buffer_bytes = 0;

@@ -137,8 +137,20 @@ class Checker {
             level.layout = host.layout;
             if (host.layout != VK_IMAGE_LAYOUT_UNDEFINED) level.content.kind = Content::Kind::Host;
             add_events(level, "the host", host.stages, access_set(host.access) & write_bits);
+            if (host.stages == VK_PIPELINE_STAGE_2_NONE) level.events.push_back(barrier_of_host(slot));
             levels_[index].assign(slot.desc.mip_levels, level);
         }
+    }
+
+    /// One that the host has placed, behind something that it wrote, for what the plan tells.
+    static Event barrier_of_host(const Slot& slot) {
+        const VkPipelineStageFlags2 told =
+            slot.uses.stages != 0 ? slot.uses.stages : VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        Event event{.who = "the host's barrier", .is_transition = true, .is_available = true};
+        event.happened_before = stage_set(told);
+        for (std::size_t i = 0; i < stage_list.size(); ++i)
+            if ((event.happened_before >> i & 1u) != 0) event.visible[i] = access_set(slot.uses.access);
+        return event;
     }
 
     static void add_events(Level& level, const std::string& who, VkPipelineStageFlags2 stages, VkAccessFlags2 written) {

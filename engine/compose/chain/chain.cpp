@@ -58,6 +58,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     note_watch_states();
     write_frame_block(frame);
     lend_images(frame);
+    // Older plans, which have made no recording for so long, may be gone.
+    if (recordings_ == desc_.slots) physical_->forget_older();
     physical_->prepare(values_.extents(), !camera.is_cut && context.delta_time > 0, frame.view);
     physical_->histories(frame.view).staged.camera = frame.camera.view;
     schedule_->derive(values_.gates(), import_states_, physical_->frame(frame.view));
@@ -160,10 +162,28 @@ void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
         return std::ranges::any_of(program_of().imports,
                                    [&](const auto& which) { return which && overlap(image_of(frame, *which), image); });
     };
-    const auto leave = [&](const ImageRef& image) {
+    const auto for_all = [&](const auto& visit) {
+        for (const plan::FrameInput& input : plan::frame_inputs)
+            if (input.given != nullptr) visit(frame.*input.given);
+        for (const Light& light : frame.lights) visit(light.cascades);
+        for (const Watched& watched : frame.watched) visit(watched.target);
+    };
+    for_all([&](const ImageRef& image) {
         if (image.image == VK_NULL_HANDLE || is_used(image)) return;
-        const auto barrier = graph::barrier_of_unused(state_of(image));
-        if (!barrier) return;
+        // Of several that are one image, the first is left for all.
+        graph::ImportState state = state_of(image);
+        bool is_later = false, is_behind = false;
+        for_all([&](const ImageRef& other) {
+            is_behind |= &other == &image;
+            if (!overlap(other, image)) return;
+            is_later |= !is_behind;
+            state.stages |= other.last_stages;
+            state.access |= other.last_access;
+            state.final_stages |= other.final_stages;
+            state.final_access |= other.final_access;
+        });
+        const auto barrier = graph::barrier_of_unused(state);
+        if (is_later || !barrier) return;
         const VkImageMemoryBarrier2 one{
             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
             .srcStageMask = barrier->source_stages,
@@ -181,11 +201,7 @@ void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
         const VkDependencyInfo dependency{
             .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &one};
         context_.vk.CmdPipelineBarrier2(commands, &dependency);
-    };
-    for (const plan::FrameInput& input : plan::frame_inputs)
-        if (input.given != nullptr) leave(frame.*input.given);
-    for (const Light& light : frame.lights) leave(light.cascades);
-    for (const Watched& watched : frame.watched) leave(watched.target);
+    });
 }
 
 void Chain::find_watched(const Frame& frame) {

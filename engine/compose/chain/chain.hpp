@@ -60,10 +60,6 @@ class Chain final : public Garbage {
     /// Of the last recording.
     [[nodiscard]] WatchState watch_state(std::uint32_t id) const;
 
-    // For the composer, of a chain that a newer one replaced: recordings that it has to outlive, and the next of them.
-    std::uint32_t recordings_left = 0;
-    Chain* next_retired = nullptr;
-
   private:
     Chain(gpu::Context& context, Worker& worker, ChainDesc desc);
     [[nodiscard]] const plan::Program& program_of() const { return desc_.program->program; }
@@ -80,8 +76,8 @@ class Chain final : public Garbage {
     [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;
     [[nodiscard]] bool is_jump(const Frame& frame);
     void find_histories(const Frame& frame);
-    void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
-    [[nodiscard]] plan::Shape expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const;
+    /// Of the passes that the graph kept, in a whole frame with these values.
+    [[nodiscard]] std::vector<plan::Shape> expected_shapes(std::span<const plan::Entry* const> entries) const;
     [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame) const;
     [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame) const;
     [[nodiscard]] std::span<const std::uint32_t> write_words(const plan::ProgramPass& pass);
@@ -104,7 +100,7 @@ class Chain final : public Garbage {
     Worker& worker_;
     ChainDesc desc_;
     Plan plan_;
-    std::vector<std::uint32_t> described_;  ///< gates and values of plan_; empty: those of the compile
+    std::vector<std::uint32_t> described_;     ///< gates and values of plan_; empty: those of the compile
     std::vector<const plan::Entry*> entries_;  ///< those of desc_, to be read
     std::uint64_t recordings_ = 0;
     bool is_abandonable_ = false;

@@ -76,11 +76,6 @@ const Plan& Chain::plan() {
     return plan_;
 }
 
-void Chain::derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame) {
-    values_.evaluate(program_of(), desc_.compile, entries, context, desc_.compile.target_extent);
-    schedule_->derive(values_.gates(), import_states_, frame);
-}
-
 Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     const plan::Program& program = program_of();
     const std::vector<const plan::Entry*> entries = pointers_to(values);
@@ -94,11 +89,7 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     }
     values_ = plan::FrameValues(program, entries);
     import_states_.resize(program.imports.size());
-    const VkExtent2D extent = desc_.compile.max_extent;
-    const Camera camera;
-    derive({.scene_extent = extent, .frame_extent = extent, .output_extent = extent, .camera = &camera}, entries, 0);
-    last_shapes_.resize(program.passes.size());
-    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(i, entries);
+    last_shapes_ = expected_shapes(entries);
 
     // The complete kernel and the one of the expected shape, for every pass, unless this program has them.
     std::vector<std::pair<std::uint32_t, bool>> missing;
@@ -114,20 +105,32 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     });
 }
 
-plan::Shape Chain::expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const {
+std::vector<plan::Shape> Chain::expected_shapes(std::span<const plan::Entry* const> entries) const {
     const plan::Program& program = program_of();
-    return plan::expected_shape(program, *compiled_, *schedule_, values_, entries, program.passes[pass],
-                                plan::largest_extents(desc_.compile));
+    const VkExtent2D extent = desc_.compile.max_extent;
+    const Camera camera;
+    plan::FrameValues values(program, entries);
+    // Twice, for entries that read what a later one made in the frame before.
+    for (int frame = 0; frame < 2; ++frame)
+        values.evaluate(program, desc_.compile, entries,
+                        {.scene_extent = extent, .frame_extent = extent, .output_extent = extent, .camera = &camera},
+                        desc_.compile.target_extent);
+    graph::Schedule schedule(*compiled_);
+    schedule.derive(values.gates(), import_states_, 0);
+    std::vector<plan::Shape> out(program.passes.size());
+    for (std::uint32_t i = 0; i < out.size(); ++i)
+        if (compiled_->kept_pass_of({i}) != ~0u)
+            out[i] = plan::expected_shape(program, *compiled_, schedule, values, entries, program.passes[i],
+                                          plan::largest_extents(desc_.compile));
+    return out;
 }
 
 Result<> Chain::build_lean() {
-    const VkExtent2D extent = desc_.compile.max_extent;
-    const Camera camera;
-    derive({.scene_extent = extent, .frame_extent = extent, .output_extent = extent, .camera = &camera}, entries_, 0);
+    const std::vector<plan::Shape> expected = expected_shapes(entries_);
     for (std::size_t i = 0; i < program_of().passes.size(); ++i) {
         if (pass_sets_[i].first == ~0u) continue;
         PassKernels& kernels = *desc_.program->kernels[i];
-        for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
+        for (const plan::Shape& shape : {expected[i], last_shapes_[i]}) {
             const auto is_there = [&] {
                 return kernels.find(shape, desc_.clock->recordings, desc_.clock->max_unfinished) != nullptr;
             };

@@ -204,5 +204,80 @@ TEST_F(ComposeHistoryStack, AnotherStageOfTheKernelsKeepsIt) {
     }
 }
 
+// A format that cannot be blitted is copied, where the extent stays.
+TEST_F(ComposeHistoryStack, AnotherStageKeepsItThoughItCannotBeBlitted) {
+    static PFN_vkGetPhysicalDeviceFormatProperties ask;
+    Device own = test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    gpu::Dispatch& vk = own.context().vk;
+    ask = vk.GetPhysicalDeviceFormatProperties;
+    vk.GetPhysicalDeviceFormatProperties = [](VkPhysicalDevice device, VkFormat format, VkFormatProperties* out) {
+        ask(device, format, out);
+        out->optimalTilingFeatures &= ~VkFormatFeatureFlags{VK_FORMAT_FEATURE_BLIT_DST_BIT};
+    };
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}), VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+                    own);
+    Composer composer(own);
+    composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
+    CompileDesc desc = host.compile_desc();
+    for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster, KernelStage::Compute}) {
+        desc.kernels = stage;
+        must(composer.compile(desc));
+        EXPECT_EQ(shown(host, composer, 1 - static_cast<double>(stage == KernelStage::Raster)), 1);
+        EXPECT_EQ(shown(host, composer, 0.5), 1);
+    }
+}
+
+// The effect behind it fails to compile, after the images of another stage were made.
+TEST_F(ComposeHistoryStack, ACompileThatFailsKeepsIt) {
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    Composer composer(host.device);
+    composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
+    CompileDesc desc = host.compile_desc();
+    desc.kernels = KernelStage::Compute;
+    must(composer.compile(desc));
+    EXPECT_EQ(shown(host, composer, 1), 1);
+    desc.kernels = KernelStage::Raster;
+    static PFN_vkCreateDescriptorPool create;
+    gpu::Dispatch& vk = host.device.context().vk;
+    create = vk.CreateDescriptorPool;
+    vk.CreateDescriptorPool = [](VkDevice, const VkDescriptorPoolCreateInfo*, const VkAllocationCallbacks*,
+                                 VkDescriptorPool*) { return VK_ERROR_OUT_OF_HOST_MEMORY; };
+    EXPECT_FALSE(composer.compile(desc));
+    vk.CreateDescriptorPool = create;
+    EXPECT_EQ(shown(host, composer, 0.5), 1);
+    must(composer.compile(desc));
+    EXPECT_EQ(shown(host, composer, 0.25), 1);
+}
+
+// A recording of another view may be the first to read what the older plan left; that is held until it has finished.
+TEST_F(ComposeHistoryStack, WhatAnOlderPlanLeftIsHeldWhileItIsRead) {
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    Composer composer(host.device, {.frames_in_flight = 1, .max_threads = 0});
+    composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
+    CompileDesc desc = host.compile_desc();
+    desc.views = 2;
+    desc.kernels = KernelStage::Compute;
+    must(composer.compile(desc));
+    Frame frame = host.frame();
+    for (const std::uint32_t view : {0U, 1U}) {
+        frame.view = view;
+        must(host.record(composer, frame));
+    }
+    desc.kernels = KernelStage::Raster;
+    must(composer.compile(desc));
+    frame.view = 0;
+    must(host.record(composer, frame));
+    // Two recordings may be unfinished: the second view's waits while the first view's next one is made, and while
+    // what is no longer needed is freed.
+    frame.view = 1;
+    must(gpu::submit_and_wait(host.device.context(), "a recording that is late", [&](VkCommandBuffer commands) {
+        must(composer.record(commands, frame));
+        frame.view = 0;
+        must(host.record(composer, frame));
+        must(composer.compile_later(desc));
+    }));
+    EXPECT_EQ(host.read_target().at(1, 1).r, 1);
+}
+
 }  // namespace
 }  // namespace darkroom

@@ -2,6 +2,7 @@
 #include "compose/chain/pass_kernels.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gpu/device/context.hpp"
 #include "gpu/shader/shader.hpp"
@@ -14,7 +15,7 @@ Result<> PassKernels::build_complete(gpu::KernelStore& store) {
     return {};
 }
 
-Result<> PassKernels::build(gpu::Context& context, const plan::Shape& shape) {
+Result<> PassKernels::build(gpu::Context& context, const plan::Shape& shape) try {
     Lean lean{.shape = shape};
     Result<> result;
     if (auto spec = plan::lean_spec(pass_, shape); !spec)
@@ -32,6 +33,12 @@ Result<> PassKernels::build(gpu::Context& context, const plan::Shape& shape) {
     if (std::ranges::find(built_, shape) == built_.end()) built_.push_back(shape);
     has_arrivals_ = true;
     return result;
+} catch (...) {
+    // Recordings have asked for it, and may ask again.
+    const std::scoped_lock lock(mutex_);
+    if (!has_arrivals_) arrivals_.clear();
+    is_given_up_ = has_arrivals_ = true;
+    throw;
 }
 
 bool PassKernels::was_built(const plan::Shape& shape) const {
@@ -54,6 +61,7 @@ PassKernels::Lean* PassKernels::place_for_another(std::uint64_t recording, std::
 void PassKernels::take_arrivals(std::uint64_t recording, std::uint64_t unfinished) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock) return;
+    if (std::exchange(is_given_up_, false)) wanted_.reset();
     for (Lean& arrival : arrivals_) {
         if (wanted_ == arrival.shape) wanted_.reset();
         if (known(arrival.shape) != nullptr) continue;

@@ -53,9 +53,10 @@ class PassKernels {
 
     const plan::ProgramPass& pass_;
     std::shared_ptr<const gpu::Kernel> complete_;
-    mutable std::mutex mutex_;  ///< guards the next two; find() tries it
+    mutable std::mutex mutex_;  ///< guards the next three; find() tries it
     std::vector<plan::Shape> built_;
     std::vector<Lean> arrivals_;             ///< once taken: what gave way to them, which the next build() frees
+    bool is_given_up_ = false;               ///< build() has thrown
     std::atomic<bool> has_arrivals_{false};  ///< so that find() need not try the lock
     std::array<Lean, 64> lean_{};
     std::size_t count_ = 0;

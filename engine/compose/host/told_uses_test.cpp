@@ -138,44 +138,71 @@ TEST_F(ComposeToldUses, EveryImageIsLeftAsTheHostAsks) {
     desc.depth = {VK_FORMAT_R32_SFLOAT};
     desc.velocity = {VK_FORMAT_R16G16_SFLOAT};
     desc.reactive = {VK_FORMAT_R32_SFLOAT};
-    test::must(composer.compile(desc));
-    for (const bool is_on : {true, false}) {
-        test::must(composer.set_enabled(blur, is_on));
-        Frame frame = host.frame();
-        frame.camera.depth = DepthKind::Planar;
-        frame.velocity = test::image_ref(others[0]);
-        frame.depth = frame.reactive = test::image_ref(others[1]);
-        frame.reactive.image = VK_NULL_HANDLE;  // what was not given is left alone
-        frame.normals = test::image_ref(others[2]);
-        for (ImageRef* const image : {&frame.color, &frame.velocity, &frame.depth, &frame.normals, &frame.target}) {
-            image->last_stages = VK_PIPELINE_STAGE_2_CLEAR_BIT;
-            image->last_access = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-            image->final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-            image->final_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
-            image->final_access = VK_ACCESS_2_TRANSFER_READ_BIT;
+    const Plan plan = test::must(composer.compile(desc));
+    for (const bool is_on : {true, false})
+        for (const bool is_brought : {false, true}) {  // by barriers of the host's own
+            test::must(composer.set_enabled(blur, is_on));
+            Frame frame = host.frame();
+            frame.camera.depth = DepthKind::Planar;
+            frame.velocity = test::image_ref(others[0]);
+            frame.depth = frame.reactive = test::image_ref(others[1]);
+            frame.reactive.image = VK_NULL_HANDLE;  // what was not given is left alone
+            frame.normals = test::image_ref(others[2]);
+            for (ImageRef* const image : {&frame.color, &frame.velocity, &frame.depth, &frame.normals, &frame.target}) {
+                image->last_stages = is_brought ? VK_PIPELINE_STAGE_2_NONE : VK_PIPELINE_STAGE_2_CLEAR_BIT;
+                image->last_access = is_brought ? VK_ACCESS_2_NONE : VK_ACCESS_2_TRANSFER_WRITE_BIT;
+                image->final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+                image->final_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+                image->final_access = VK_ACCESS_2_TRANSFER_READ_BIT;
+            }
+            frame.normals.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+            frame.target.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+            last_barrier.clear();
+            test::must(host.record(composer, frame));
+            for (const ImageRef& image : {frame.color, frame.velocity, frame.depth, frame.normals, frame.target}) {
+                SCOPED_TRACE(fmt::format("{}, motion blur is {}, brought by the host: {}",
+                                         gpu::format_name(image.format), is_on, is_brought));
+                ASSERT_EQ(last_barrier.count(image.image), 1u);
+                const VkImageMemoryBarrier2& left = last_barrier.at(image.image);
+                EXPECT_EQ(left.dstStageMask, VK_PIPELINE_STAGE_2_COPY_BIT);
+                EXPECT_EQ(left.dstAccessMask, VK_ACCESS_2_TRANSFER_READ_BIT);
+                EXPECT_NE(left.newLayout, VK_IMAGE_LAYOUT_UNDEFINED);
+                EXPECT_NE(left.srcStageMask, VK_PIPELINE_STAGE_2_NONE) << "it waits for no barrier of the host";
+                const bool is_target = image.image == frame.target.image;
+                if (is_target) continue;
+                EXPECT_EQ(left.newLayout,
+                          image.image == frame.normals.image ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : image.layout);
+            }
+            EXPECT_EQ(last_barrier.count(VK_NULL_HANDLE), 0u);
+            // Back to where the test's picture has it.
+            test::must(gpu::submit_and_wait(context, "a host's frame", [&](VkCommandBuffer commands) {
+                gpu::transition(context, commands, others[2].image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                others[2].layout);
+            }));
         }
-        frame.normals.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-        frame.target.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-        last_barrier.clear();
-        test::must(host.record(composer, frame));
-        for (const ImageRef& image : {frame.color, frame.velocity, frame.depth, frame.normals, frame.target}) {
-            SCOPED_TRACE(fmt::format("{}, motion blur is {}", gpu::format_name(image.format), is_on));
-            ASSERT_EQ(last_barrier.count(image.image), 1u);
-            const VkImageMemoryBarrier2& left = last_barrier.at(image.image);
-            EXPECT_EQ(left.dstStageMask, VK_PIPELINE_STAGE_2_COPY_BIT);
-            EXPECT_EQ(left.dstAccessMask, VK_ACCESS_2_TRANSFER_READ_BIT);
-            EXPECT_NE(left.newLayout, VK_IMAGE_LAYOUT_UNDEFINED);
-            const bool is_target = image.image == frame.target.image;
-            if (is_target) continue;
-            EXPECT_EQ(left.newLayout,
-                      image.image == frame.normals.image ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : image.layout);
-        }
-        EXPECT_EQ(last_barrier.count(VK_NULL_HANDLE), 0u);
-        // Back to where the test's picture has it.
-        test::must(gpu::submit_and_wait(context, "a host's frame", [&](VkCommandBuffer commands) {
-            gpu::transition(context, commands, others[2].image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, others[2].layout);
-        }));
-    }
+}
+
+// What no effect reads may be one image under several names: its layout changes once, for all who asked.
+TEST_F(ComposeToldUses, AnImageThatIsGivenTwiceIsLeftOnce) {
+    const Host host(test::random_display(16, 16, 3));
+    const gpu::test::Picture other = gpu::test::blank(host.device.context(), {16, 16}, VK_FORMAT_R16G16B16A16_SFLOAT);
+    Composer composer(host.device);
+    add(composer, "exposure");
+    test::must(composer.compile(host.compile_desc()));
+    Frame frame = host.frame();
+    frame.normals = test::image_ref(other);
+    frame.normals.final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    frame.normals.last_stages = VK_PIPELINE_STAGE_2_CLEAR_BIT;
+    frame.normals.final_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+    frame.velocity = frame.normals;
+    frame.velocity.final_stages = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    const std::array watched{Watched{.id = 3, .target = frame.normals}};
+    frame.watched = watched;
+    barriers_of_library.clear();
+    test::must(host.record(composer, frame));
+    EXPECT_EQ(barriers_of_library[frame.normals.image], 1);
+    EXPECT_EQ(last_barrier.at(frame.normals.image).dstStageMask,
+              VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 // Segments: a composer for what comes before the host's pass, and one for what comes behind it.

@@ -414,6 +414,52 @@ TEST_F(ComposeEdit, ThePlanIsWhatRunsNow) {
     }
 }
 
+// What is built for kernels that recordings missed is no frame: the plan goes on telling of the last one.
+TEST_F(ComposeEdit, WaitingForKernelsLeavesThePlanThatWasShown) {
+    const Host host(small_picture());
+    Composer composer(host.device);
+    const Handle blur = add(composer, "gaussian_blur", {{"radius", 3}});
+    add(composer, "negative");
+    must(composer.add_layer({.name = "far",
+                             .weight = 1,
+                             .distance = LayerDistance{.near = 1, .far = 2, .point = {1000, 0, 0}},
+                             .values = {{blur, "enabled", {0}}}}));
+    must(composer.compile(host.compile_desc()));
+    Frame frame = host.frame();
+    frame.camera.view[12] = -1000;
+    must(host.record(composer, frame));
+    const std::string shown = composer.current_plan()->text();
+    EXPECT_EQ(composer.current_plan()->passes.size(), 1U) << shown;
+    composer.wait_for_kernels();
+    EXPECT_EQ(composer.current_plan()->text(), shown);
+}
+
+TEST_F(ComposeEdit, AFailedCompileLaterLeavesThePlanThatIsReady) {
+    const Host host(small_picture());
+    auto broken = CustomEffect::parse(
+        "// @effect broken: Does not compile.\nvec4 broken(vec4 color, Pixel pixel, Broken parameters) { return oops; "
+        "}\n",
+        "broken.glsl");
+    ASSERT_TRUE(broken) << broken.error().text;
+    Composer composer(host.device, {.max_threads = 0});
+    const Handle blur = add(composer, "gaussian_blur", {}, {.opacity = 0.5f});
+    must(composer.compile(host.compile_desc()));
+    CompileDesc larger = host.compile_desc(), largest = larger;
+    larger.max_extent = {50, 40};
+    largest.max_extent = {60, 50};
+    must(composer.compile_later(larger));
+    EXPECT_TRUE(composer.pending().is_ready);
+    must(composer.rewire(blur, {}));
+    const Handle added = composer.add(broken->info(), nullptr);
+    must(composer.compile_later(largest));
+    EXPECT_TRUE(composer.pending().error.has_value());
+    EXPECT_TRUE(composer.pending().is_ready) << "the one before";
+    must(composer.set_opacity(blur, 0.25f));  // both plans that there are mix it
+    must(composer.remove(added));
+    const Plan plan = must(composer.rebind(host.device));
+    EXPECT_EQ(plan.passes.front().extent.width, 50U);
+}
+
 TEST_F(ComposeEdit, AFailedCompileLeavesThePicture) {
     const Host host(small_picture());
     Composer composer(host.device);

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <ranges>
+
+#include "gpu/resource/formats.hpp"
+
 namespace darkroom::graph {
 namespace {
-
-bool is_depth(VkFormat format) { return format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT; }
 
 HistoryImages::Resampling resampling_of(const gpu::Context& context, VkFormat format) {
     constexpr VkFormatFeatureFlags blit = VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT |
@@ -14,7 +16,7 @@ HistoryImages::Resampling resampling_of(const gpu::Context& context, VkFormat fo
     if (!context.supports(format, blit)) return HistoryImages::Resampling::None;
     // Depth is blitted without a filter, whatever its format can do (VUID-vkCmdBlitImage-srcImage-00232).
     const bool is_filtered =
-        !is_depth(format) && context.supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
+        !gpu::is_depth(format) && context.supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
     return is_filtered ? HistoryImages::Resampling::Linear : HistoryImages::Resampling::Nearest;
 }
 
@@ -29,10 +31,13 @@ bool fits(const gpu::ImageInfo& there, const Slot& slot) {
 std::shared_ptr<HistoryImages> HistoryPool::find(const Slot& slot, std::uint32_t view_index) const {
     const auto found = images_.find({slot.history_key, view_index});
     if (slot.history_key.owner == 0 || found == images_.end()) return nullptr;
-    const HistoryImages& there = *found->second;
-    const bool is_usable =
-        slot.desc.is_buffer() ? there.buffer.memory.size >= slot.desc.buffer_bytes : fits(there.images[0].info, slot);
-    return is_usable ? found->second : nullptr;
+    for (const auto& weak : std::views::reverse(found->second)) {
+        std::shared_ptr<HistoryImages> there = weak.lock();
+        if (there && (slot.desc.is_buffer() ? there->buffer.memory.size >= slot.desc.buffer_bytes
+                                            : fits(there->images[0].info, slot)))
+            return there;
+    }
+    return nullptr;
 }
 
 Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Slot> slots, std::uint32_t views) {
@@ -62,15 +67,13 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
                 continue;
             }
             history->resampling = resampling_of(context, slot.desc.format);
-            const bool is_resampled = history->resampling != HistoryImages::Resampling::None;
             for (std::size_t parity = 0; parity < history->images.size(); ++parity)
                 infos.push_back({.name = fmt::format("{} {} of view {}", slot.desc.name, parity, view),
                                  .format = slot.desc.format,
                                  .extent = {slot.extent.width, slot.extent.height, 1},
                                  .mip_levels = slot.desc.mip_levels,
                                  .array_layers = slot.desc.array_layers,
-                                 .usage = slot.usage | usage |
-                                          (is_resampled ? VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_SRC_BIT} : 0)});
+                                 .usage = slot.usage | usage});
         }
     }
     const auto memory = std::make_shared<gpu::Memory>();
@@ -81,18 +84,16 @@ Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Sl
             history->memory = memory;
             for (gpu::Image& image : history->images) image = std::move(*next++);
         }
-        if (key.first.owner != 0) images_[key] = history;
+        if (key.first.owner != 0) images_[key].push_back(history);
     }
+    for (auto& [key, of_key] : images_) std::erase_if(of_key, [](const auto& weak) { return weak.expired(); });
+    std::erase_if(images_, [](const auto& entry) { return entry.second.empty(); });
     return out;
 }
 
 std::shared_ptr<HistoryView> HistoryPool::view(std::uint32_t index) {
     while (views_.size() <= index) views_.push_back(std::make_shared<HistoryView>());
     return views_[index];
-}
-
-void HistoryPool::trim() {
-    std::erase_if(images_, [](const auto& entry) { return entry.second.use_count() == 1; });
 }
 
 }  // namespace darkroom::graph

@@ -2,7 +2,7 @@
 #pragma once
 // The images of histories, shared by the plans that follow each other: a plan that is made while another runs takes
 // over the images of every history that both have, so what moves on the screen leaves its trail across an edit. The
-// pool owns them together with the Physicals that use them; it records nothing.
+// Physicals own them, the pool finds them; it records nothing.
 
 #include <array>
 #include <cstdint>
@@ -20,10 +20,10 @@ namespace darkroom::graph {
 struct HistoryImages {
     enum class Resampling : std::uint8_t { None, Nearest, Linear };
     static constexpr std::uint64_t never = ~std::uint64_t{0};
-    std::shared_ptr<gpu::Memory> memory;  ///< of all histories that one plan was the first to declare
-    std::array<gpu::Image, 2> images;     ///< by Slot::history_parity
-    gpu::Buffer buffer;                   ///< of a lasting buffer, in place of the images
-    Resampling resampling = Resampling::None;
+    std::shared_ptr<gpu::Memory> memory;       ///< of all histories that one plan was the first to declare
+    std::array<gpu::Image, 2> images;          ///< by Slot::history_parity
+    gpu::Buffer buffer;                        ///< of a lasting buffer, in place of the images
+    Resampling resampling = Resampling::None;  ///< where the extent changes; else they are copied
     /// Of the same history, used in other ways: the first recording goes on with what they hold.
     std::weak_ptr<HistoryImages> older{};
     // Recording alone touches what follows.
@@ -57,15 +57,13 @@ class HistoryPool {
     /// one thread at a time; another one may meanwhile record.
     [[nodiscard]] Result<Histories> acquire(gpu::Context& context, std::span<const Slot> slots, std::uint32_t views);
     [[nodiscard]] std::shared_ptr<HistoryView> view(std::uint32_t index);
-    /// Drops the images that no Physical uses. For the thread that acquires.
-    void trim();
-    [[nodiscard]] std::size_t size() const { return images_.size(); }
 
   private:
-    /// Of the same kind and size; null: there is none.
+    /// Of the same kind and size, if a Physical uses it; else null.
     [[nodiscard]] std::shared_ptr<HistoryImages> find(const Slot& slot, std::uint32_t view_index) const;
 
-    std::map<std::pair<HistoryKey, std::uint32_t>, std::shared_ptr<HistoryImages>> images_;  ///< by key and view
+    /// By key and view, the newest last: one that a failed compile made is gone with it, and the one before is found.
+    std::map<std::pair<HistoryKey, std::uint32_t>, std::vector<std::weak_ptr<HistoryImages>>> images_;
     std::vector<std::shared_ptr<HistoryView>> views_;
 };
 

@@ -35,6 +35,18 @@ struct Trail {
     }
 };
 
+/// The same, and a pass that is off may draw over the sum.
+void also_painted(Graph& graph) {
+    const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+    const Graph::History history = graph.history(float_image("trail"), key);
+    const Version sum = graph.add({.name = "add",
+                                   .reads = {{history.previous, Use::SampledCompute}},
+                                   .writes = {{history.current, Use::StorageWrite}}})[0];
+    const Version drawn = graph.add({.name = "paint", .writes = {{sum, Use::ColorBlend}}, .gate = 0})[0];
+    graph.keep(graph.add(
+        {.name = "show", .reads = {{drawn, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+}
+
 /// target = value of the frame.
 void without_history(Graph& graph) {
     const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
@@ -47,6 +59,12 @@ class GraphPhysicalHistory : public ::testing::Test {
     float frame(Runner& runner, std::uint32_t view, float value, VkExtent2D extent = small_extent) {
         runner.frame(std::array{&target_}, view, extent, value);
         return gpu::test::download(context_, target_).at(extent.width - 1, extent.height - 1)[0];
+    }
+
+    /// A frame with what has a switch off.
+    float with_nothing_on(Runner& runner, float value, VkExtent2D extent = small_extent) {
+        runner.frame(std::array{&target_}, 0, extent, value, std::array{false});
+        return gpu::test::download(context_, target_).at(3, 3)[0];
     }
 
     gpu::Context& context_ = gpu::test::context();
@@ -93,7 +111,6 @@ TEST_F(GraphPhysicalHistory, WithoutAnOwnerNothingIsShared) {
     Runner second(small_extent, 1, pool_, Trail{.own_key = {}});
     EXPECT_EQ(frame(first, 0, 1), 1);
     EXPECT_EQ(frame(second, 0, 2), 2);
-    EXPECT_EQ(pool_.size(), 0u);
 }
 
 TEST_F(GraphPhysicalHistory, ViewsThatComeLaterLeaveTheOthersAlone) {
@@ -115,16 +132,30 @@ TEST_F(GraphPhysicalHistory, PausesStartFromZero) {
     EXPECT_EQ(frame(trail, 0, 8), 12);
 }
 
-TEST_F(GraphPhysicalHistory, ThePoolDropsWhatNobodyUses) {
+TEST_F(GraphPhysicalHistory, ThePoolHoldsNothingItself) {
     auto older = std::make_unique<Runner>(small_extent, 2, pool_, Trail{});
-    const Runner newer(small_extent, 1, pool_, Trail{});
-    EXPECT_EQ(pool_.size(), 2u);
-    pool_.trim();
-    EXPECT_EQ(pool_.size(), 2u) << "the older plan uses the second view";
+    EXPECT_EQ(frame(*older, 0, 1), 1);
+    EXPECT_EQ(frame(*older, 1, 10), 10);
+    Runner newer(small_extent, 1, pool_, Trail{});
     older.reset();
-    EXPECT_EQ(pool_.size(), 2u);
-    pool_.trim();
-    EXPECT_EQ(pool_.size(), 1u);
+    Runner newest(small_extent, 2, pool_, Trail{});
+    EXPECT_EQ(frame(newest, 0, 2), 3) << "the plan in between has it";
+    EXPECT_EQ(frame(newest, 1, 20), 20) << "the second view went with the only plan that had it";
+}
+
+// The newest plan that lives is gone on from, not the newest that was made: one whose compile failed behind its
+// histories has left nothing.
+TEST_F(GraphPhysicalHistory, OneThatCouldNotBeMadeLeavesWhatThereIs) {
+    Runner older(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(older, 0, 1), 1);
+    {
+        const Runner failed(small_extent, 1, pool_, also_painted);
+        ASSERT_NE(failed.physical.history(0), older.physical.history(0));
+    }
+    Runner newer(small_extent, 1, pool_, also_painted);
+    EXPECT_EQ(with_nothing_on(newer, 2), 3);
+    Runner newest(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(newest, 0, 4), 7);
 }
 
 TEST_F(GraphPhysicalHistory, OneIsResetAloneTheOtherGoesOn) {
@@ -179,34 +210,73 @@ TEST_F(GraphPhysicalHistory, OneThatAFrameDidNotWriteIsZeroInTheNext) {
 }
 
 TEST_F(GraphPhysicalHistory, APlanThatUsesItInOtherWaysGoesOn) {
-    const auto also_painted = [](Graph& graph) {
-        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
-        const Graph::History history = graph.history(float_image("trail"), key);
-        const Version sum = graph.add({.name = "add",
-                                       .reads = {{history.previous, Use::SampledCompute}},
-                                       .writes = {{history.current, Use::StorageWrite}}})[0];
-        const Version painted = graph.add({.name = "paint", .writes = {{sum, Use::ColorBlend}}, .gate = 0})[0];
-        graph.keep(graph.add(
-            {.name = "show", .reads = {{painted, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
-    };
     Runner older(small_extent, 1, pool_, Trail{});
     EXPECT_EQ(frame(older, 0, 1), 1);
     Runner newer(small_extent, 1, pool_, also_painted);
     ASSERT_NE(newer.physical.history(0), older.physical.history(0)) << "its images were not made to be drawn into";
-    const auto shown = [&](Runner& runner, float value, VkExtent2D extent = small_extent) {
-        runner.frame(std::array{&target_}, 0, extent, value, std::array{false});
-        return gpu::test::download(context_, target_).at(3, 3)[0];
-    };
     EXPECT_EQ(frame(older, 0, 2), 3);
-    EXPECT_EQ(shown(newer, 4), 7);
+    EXPECT_EQ(with_nothing_on(newer, 4), 7);
     newer.physical.abandon();
-    EXPECT_EQ(shown(newer, 4, {11, 5}), 7);
-    EXPECT_EQ(shown(newer, 8), 15);
-    EXPECT_EQ(shown(newer, 16), 31);
+    EXPECT_EQ(with_nothing_on(newer, 4, {11, 5}), 7);
+    EXPECT_EQ(with_nothing_on(newer, 8), 15);
+    EXPECT_EQ(with_nothing_on(newer, 16), 31);
     // Taken out again: the images of the newer plan serve as well.
     Runner newest(small_extent, 1, pool_, Trail{});
     EXPECT_EQ(newest.physical.history(0), newer.physical.history(0));
     EXPECT_EQ(frame(newest, 0, 32), 63);
+}
+
+// The last pass writes all of it, so the first one runs only for who looks in between.
+TEST_F(GraphPhysicalHistory, OneThatIsWrittenOnceMoreGoesOn) {
+    Runner runner(small_extent, 1, pool_, [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        const Graph::History history = graph.history(float_image("trail"));
+        const Version early = graph.add({.name = "early", .writes = {{history.current, Use::StorageWrite}}})[0];
+        graph.add({.name = "look",
+                   .reads = {{early, Use::SampledCompute}},
+                   .writes = {{graph.create(float_image("seen")), Use::StorageWrite}},
+                   .has_side_effect = true,
+                   .gate = 0});
+        const Version sum = graph.add({.name = "add",
+                                       .reads = {{history.previous, Use::SampledCompute}},
+                                       .writes = {{early, Use::StorageWrite}}})[0];
+        graph.keep(graph.add(
+            {.name = "show", .reads = {{sum, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    });
+    EXPECT_EQ(with_nothing_on(runner, 1), 1);
+    EXPECT_EQ(with_nothing_on(runner, 2), 3);
+    EXPECT_EQ(with_nothing_on(runner, 4), 7);
+}
+
+// A level that is read, and that a switch leaves unwritten, holds what an older frame left.
+TEST_F(GraphPhysicalHistory, OneOfWhichALevelIsNotWrittenStartsFromZero) {
+    const auto declare = [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        ImageDesc image = float_image("trail");
+        image.mip_levels = 2;
+        const Graph::History history = graph.history(image);
+        const Version sum = graph.add({.name = "add",
+                                       .reads = {{history.previous, Use::SampledCompute, {0, 1}}},
+                                       .writes = {{history.current, Use::StorageWrite, {0, 1}}}})[0];
+        const Version both = graph.add({.name = "second", .writes = {{sum, Use::StorageWrite, {1, 1}}}, .gate = 0})[0];
+        const Version shown =
+            graph.add({.name = "merge",
+                       .reads = {{both, Use::SampledCompute, {0, 1}}, {history.previous, Use::SampledCompute, {1, 1}}},
+                       .writes = {{graph.create(float_image("merged")), Use::StorageWrite}}})[0];
+        graph.keep(graph.add(
+            {.name = "show", .reads = {{shown, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    };
+    const auto compiled = [&] {
+        Graph graph;
+        declare(graph);
+        return gpu::test::must(graph.compile(small_extent, measure_on(context_)));
+    }();
+    Schedule schedule(compiled);
+    for (const bool is_on : {true, false}) {
+        schedule.derive(std::array{is_on}, {}, 0);
+        EXPECT_TRUE(schedule.reads_history(0));
+        EXPECT_EQ(schedule.writes_history(0), is_on);
+    }
 }
 
 TEST_F(GraphPhysicalHistory, WhatIsGivenUpOrTakenBackLeavesNoTrace) {

@@ -264,8 +264,8 @@ void Physical::prepare(const Extents& extents, bool is_related, std::uint32_t vi
     ++view.staged.recordings;
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);
-        if (images != nullptr && images->buffer.handle == VK_NULL_HANDLE)
-            images->is_valid &= images->resampling != HistoryImages::Resampling::None;
+        if (images != nullptr && images->resampling == HistoryImages::Resampling::None)
+            images->is_valid &= has_same_extent(index, view.now.extents, extents);
     }
 }
 
@@ -308,6 +308,11 @@ void Physical::abandon(std::uint32_t view_index) {
     last_recordings_[view_index] = HistoryImages::never;
     for (std::uint32_t index = 0; index < history_count(); ++index)
         if (HistoryImages* const images = history(index, view_index)) images->last_written = images->before;
+}
+
+void Physical::forget_older() {
+    for (const History& history : histories_)
+        for (const auto& images : history.views) images->older.reset();
 }
 
 void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
@@ -368,8 +373,8 @@ void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk
     const std::size_t parity = histories(view_index).now.recordings & 1;
     const std::shared_ptr<const HistoryImages> from_images = source_of(images);
     const gpu::Image &source = from_images->images[1 - parity], &target = images.images[parity];
-    const bool is_linear =
-        images.resampling == HistoryImages::Resampling::Linear && !has_same_extent(history_index, from, to);
+    const bool stays = has_same_extent(history_index, from, to);
+    const bool is_linear = !stays && images.resampling == HistoryImages::Resampling::Linear;
     const Entry& entry = entries_[histories_[history_index].slots[0]];
     constexpr VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     constexpr VkImageLayout target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -385,6 +390,12 @@ void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk
             return VkOffset3D{static_cast<std::int32_t>(extent.width), static_cast<std::int32_t>(extent.height), 1};
         };
         const VkImageSubresourceLayers layers{gpu::format_traits(entry.format).aspects, mip, 0, entry.array_layers};
+        if (stays) {
+            const VkExtent2D extent = mip_extent(entry.size.of(to), mip);
+            const VkImageCopy copy{layers, {}, layers, {}, {extent.width, extent.height, 1}};
+            vk.CmdCopyImage(commands, source.handle, source_layout, target.handle, target_layout, 1, &copy);
+            continue;
+        }
         const VkImageBlit blit{layers, {{}, corner(from)}, layers, {{}, corner(to)}};
         vk.CmdBlitImage(commands, source.handle, source_layout, target.handle, target_layout, 1, &blit,
                         is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);

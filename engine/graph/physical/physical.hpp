@@ -80,11 +80,13 @@ class Physical {
     void end(const Schedule& schedule, std::uint32_t view_index = 0);
     /// Takes back the view's last recording, which was this one's.
     void abandon(std::uint32_t view_index = 0);
+    /// From now on what lies in images of an older plan is lost: they are held no longer.
+    void forget_older();
     /// Clears a history to zero and brings it to its rest layout.
     void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
                       std::uint32_t history_index) const;
     /// Of a valid history, resamples what the frame gets as previous, from one of the extents `from`, each the top left
-    /// of its image: as it is where its own extent stays, else linearly where its format allows, by the nearest texel
+    /// of its image: a copy where its own extent stays, else linearly where its format allows, by the nearest texel
     /// where it does not.
     void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
                          std::uint32_t history_index, const Extents& from, const Extents& to) const;
