@@ -2,6 +2,11 @@
 // Frames by the C interface: the picture of the C++ one, bit for bit, and nothing allocated.
 #include <gtest/gtest.h>
 
+#include <darkroom/effects/bloom.hpp>
+#include <darkroom/effects/encode.hpp>
+#include <darkroom/effects/exposure.hpp>
+#include <darkroom/effects/tonemap.hpp>
+
 #include "c/frame_of.hpp"
 #include "compose/test_stacks/host.hpp"
 #include "core/test_support_allocations.hpp"

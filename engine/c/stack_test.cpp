@@ -9,6 +9,10 @@
 #include <cmath>
 #include <cstring>
 #include <darkroom/effects.hpp>
+#include <darkroom/effects/blend.hpp>
+#include <darkroom/effects/bloom.hpp>
+#include <darkroom/effects/encode.hpp>
+#include <darkroom/effects/tonemap.hpp>
 #include <limits>
 #include <string>
 #include <thread>

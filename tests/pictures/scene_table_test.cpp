@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <darkroom/effects/ssao.hpp>
 #include <filesystem>
 
 #include "image/picture/write.hpp"
