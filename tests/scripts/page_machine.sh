@@ -17,4 +17,4 @@ run "$(line install './darkroom --yes --version')"
 run "$(line install 'cmake --preset release')"
 tests/scripts/page_builds.sh "$PWD" "$PWD/build"
 run "$(line python 'sudo apt-get install python3-venv')"
-tests/scripts/pip_install.sh "$PWD"
+tests/scripts/pip_install.sh "$PWD" || [[ $? == 77 ]]   # 77: it says that pip brings nothing here
