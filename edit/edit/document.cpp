@@ -117,4 +117,15 @@ void LookDocument::redo() {
     take(std::move(step.look));
 }
 
+std::vector<std::filesystem::path> Watch::take_changes() {
+    std::vector<std::filesystem::path> changed;
+    for (auto& [file, stamp] : files_) {
+        const FileStamp now = stamp_of(file);
+        if (now == stamp || now == FileStamp{}) continue;
+        stamp = now;
+        changed.push_back(file);
+    }
+    return changed;
+}
+
 }  // namespace darkroom::edit

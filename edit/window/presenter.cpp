@@ -1,20 +1,76 @@
 // SPDX-License-Identifier: MIT
 #include "window/presenter.hpp"
 
+#include <vulkan/vulkan.h>
+
 #include <algorithm>
 #include <deque>
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
-#include "window/surface_functions.hpp"
 
 namespace darkroom::window {
 
 namespace {
+
+// Vulkan functions of windows, which the library itself does not call.
+
+struct SurfaceFunctions {
+    PFN_vkGetPhysicalDeviceSurfaceSupportKHR GetPhysicalDeviceSurfaceSupportKHR = nullptr;
+    PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR GetPhysicalDeviceSurfaceCapabilitiesKHR = nullptr;
+    PFN_vkGetPhysicalDeviceSurfaceFormatsKHR GetPhysicalDeviceSurfaceFormatsKHR = nullptr;
+    PFN_vkGetPhysicalDeviceSurfacePresentModesKHR GetPhysicalDeviceSurfacePresentModesKHR = nullptr;
+    PFN_vkDestroySurfaceKHR DestroySurfaceKHR = nullptr;
+    PFN_vkCreateSwapchainKHR CreateSwapchainKHR = nullptr;
+    PFN_vkDestroySwapchainKHR DestroySwapchainKHR = nullptr;
+    PFN_vkGetSwapchainImagesKHR GetSwapchainImagesKHR = nullptr;
+    PFN_vkAcquireNextImageKHR AcquireNextImageKHR = nullptr;
+    PFN_vkQueuePresentKHR QueuePresentKHR = nullptr;
+    PFN_vkCreateSemaphore CreateSemaphore = nullptr;
+    PFN_vkDestroySemaphore DestroySemaphore = nullptr;
+    PFN_vkWaitSemaphores WaitSemaphores = nullptr;
+    PFN_vkGetSemaphoreCounterValue GetSemaphoreCounterValue = nullptr;
+    PFN_vkSetHdrMetadataEXT SetHdrMetadataEXT = nullptr;  ///< of VK_EXT_hdr_metadata; null: there is none
+
+    /// False: the driver lacks one.
+    [[nodiscard]] bool load(const gpu::Context& context);
+};
+
+bool SurfaceFunctions::load(const gpu::Context& context) {
+    bool is_complete = true;
+    const auto of_instance = [&](auto& function, const char* name) {
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+            context.vk.GetInstanceProcAddr(context.instance, name));
+        is_complete = is_complete && function != nullptr;
+    };
+    const auto of_device = [&](auto& function, const char* name) {
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+            context.vk.GetDeviceProcAddr(context.device, name));
+        is_complete = is_complete && function != nullptr;
+    };
+    of_instance(GetPhysicalDeviceSurfaceSupportKHR, "vkGetPhysicalDeviceSurfaceSupportKHR");
+    of_instance(GetPhysicalDeviceSurfaceCapabilitiesKHR, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+    of_instance(GetPhysicalDeviceSurfaceFormatsKHR, "vkGetPhysicalDeviceSurfaceFormatsKHR");
+    of_instance(GetPhysicalDeviceSurfacePresentModesKHR, "vkGetPhysicalDeviceSurfacePresentModesKHR");
+    of_instance(DestroySurfaceKHR, "vkDestroySurfaceKHR");
+    of_device(CreateSwapchainKHR, "vkCreateSwapchainKHR");
+    of_device(DestroySwapchainKHR, "vkDestroySwapchainKHR");
+    of_device(GetSwapchainImagesKHR, "vkGetSwapchainImagesKHR");
+    of_device(AcquireNextImageKHR, "vkAcquireNextImageKHR");
+    of_device(QueuePresentKHR, "vkQueuePresentKHR");
+    of_device(CreateSemaphore, "vkCreateSemaphore");
+    of_device(DestroySemaphore, "vkDestroySemaphore");
+    of_device(WaitSemaphores, "vkWaitSemaphores");
+    of_device(GetSemaphoreCounterValue, "vkGetSemaphoreCounterValue");
+    SetHdrMetadataEXT =
+        reinterpret_cast<PFN_vkSetHdrMetadataEXT>(context.vk.GetDeviceProcAddr(context.device, "vkSetHdrMetadataEXT"));
+    return is_complete;
+}
 
 constexpr std::uint64_t forever = std::numeric_limits<std::uint64_t>::max();
 /// Swapchains that may wait to be freed. More: the window changes and shows nothing, and the device is waited for.
@@ -464,14 +520,6 @@ bool Presenter::is_finished(std::uint64_t number) const {
 const ColorState& Presenter::color() const { return state_->color; }
 VkFormat Presenter::format() const { return state_->format.format; }
 bool Presenter::can_copy() const { return state_->can_copy; }
-Presentation Presenter::presentation() const { return state_->desc.presentation; }
-
-void Presenter::set_presentation(Presentation presentation) {
-    if (presentation == state_->desc.presentation) return;
-    state_->desc.presentation = presentation;
-    state_->is_stale = true;
-}
-
 const PresenterCounters& Presenter::counters() const { return state_->counters; }
 
 }  // namespace darkroom::window

@@ -75,8 +75,6 @@ class Presenter {
     [[nodiscard]] const ColorState& color() const;
     /// Can the images be copied from?
     [[nodiscard]] bool can_copy() const;
-    [[nodiscard]] Presentation presentation() const;
-    void set_presentation(Presentation presentation);
     [[nodiscard]] const PresenterCounters& counters() const;
 
   private:
