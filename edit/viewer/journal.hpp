@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "core/own_file.hpp"
 #include "edit/document.hpp"
 
 namespace app {
@@ -16,10 +17,6 @@ class Journal {
   public:
     /// `folder`: of looks that have no file yet; empty: these have no journal.
     explicit Journal(std::filesystem::path folder) : folder_(std::move(folder)) {}
-
-    Journal(const Journal&) = delete;
-    Journal& operator=(const Journal&) = delete;
-    ~Journal();
 
     /// What a former process has left of this look, and nobody writes any more: as LookDocument::take_unsaved reads it.
     /// It stays where it is, and is offered again at the next time, until it is settled.
@@ -36,7 +33,7 @@ class Journal {
     using Clock = std::chrono::steady_clock;
     struct Held {
         std::filesystem::path file;
-        int lock = -1;  ///< none: there is no file
+        darkroom::FileLock lock;  ///< none: there is no file
     };
     /// Empty: there is none.
     [[nodiscard]] std::filesystem::path file_of(const darkroom::edit::LookDocument& document, int number) const;

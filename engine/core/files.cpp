@@ -157,7 +157,10 @@ Result<> check_own_file(const fs::path& path, FileOwner owner) {
     return owner == FileOwner::Anyone || is_of_this_user(path) ? Result<>() : refuse("belongs to another user");
 }
 
-Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
+namespace {
+
+/// Beside what is to be replaced, with this in it.
+Result<AtomicPath> written_beside(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
     DARKROOM_TRY(check_own_file(path, owner));
     DARKROOM_TRY_VALUE(auto temporary, AtomicPath::beside(path));
     // A link that was put there since leads to another folder or another name.
@@ -167,7 +170,32 @@ Result<> write_own_file(const fs::path& path, std::span<const std::byte> content
     OpenFile file;
     if (const auto failed = file.open(temporary.path(), OpenFile::How::Truncate)) return open_error(path, failed);
     DARKROOM_TRY(write_and_close(file, path, content));
+    return temporary;
+}
+
+}  // namespace
+
+Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
+    DARKROOM_TRY_VALUE(AtomicPath temporary, written_beside(path, content, owner));
     return temporary.commit();
+}
+
+Result<FileLock> write_locked_file(const fs::path& path, std::span<const std::byte> content) {
+    DARKROOM_TRY_VALUE(AtomicPath temporary, written_beside(path, content, FileOwner::ThisUser));
+    auto lock = std::make_shared<OpenFile>();
+    if (const auto failed = lock->open(temporary.path(), OpenFile::How::Read)) return open_error(path, failed);
+    if (!lock->lock()) return machine_error(fmt::format("{}: cannot be locked", printable(path.string())));
+    DARKROOM_TRY(temporary.commit());
+    return FileLock(std::move(lock));
+}
+
+FileLock lock_own_file(const fs::path& path) {
+    auto lock = std::make_shared<OpenFile>();
+    FileFacts held, there;
+    if (!check_own_file(path) || lock->open(path, OpenFile::How::Read) || !lock->lock() || lock->facts(held)) return {};
+    // Who writes it replaces it, and a link may have been put there since.
+    if (!check_own_file(path) || facts_of(path, there) || held.number != there.number) return {};
+    return lock;
 }
 
 void AtomicPath::remove_on_signals() { remove_watched_files_on_signals(); }

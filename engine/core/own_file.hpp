@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <memory>
 #include <span>
 
 namespace darkroom {
@@ -20,5 +21,12 @@ enum class FileOwner { ThisUser, Anyone };
 /// write_file, after check_own_file. What stands there is replaced, and never written through.
 [[nodiscard]] Result<> write_own_file(const std::filesystem::path& path, std::span<const std::byte> content,
                                       FileOwner owner = FileOwner::ThisUser);
+
+/// Held as long as this lives, however the process ends.
+using FileLock = std::shared_ptr<const void>;
+/// Of a file of ours that is there and that nobody holds; else null.
+[[nodiscard]] FileLock lock_own_file(const std::filesystem::path& path);
+/// write_own_file, of a file that is held before it stands there.
+[[nodiscard]] Result<FileLock> write_locked_file(const std::filesystem::path& path, std::span<const std::byte> content);
 
 }  // namespace darkroom

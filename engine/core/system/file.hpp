@@ -50,6 +50,8 @@ class OpenFile {
     /// `count`: how many bytes were read into `room`; 0 at the end.
     [[nodiscard]] std::error_code read(std::span<std::byte> room, std::size_t& count);
     [[nodiscard]] std::error_code write(std::span<const std::byte> content);
+    /// Until it is closed, however this process ends; false: somebody else holds it.
+    [[nodiscard]] bool lock();
     /// Waits until what was written is on the disk.
     [[nodiscard]] std::error_code reach_disk();
     /// Some file systems say only here that there was no room.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,6 +102,7 @@ std::error_code OpenFile::write(std::span<const std::byte> content) {
     return {};
 }
 
+bool OpenFile::lock() { return ::flock(number_, LOCK_EX | LOCK_NB) == 0; }
 std::error_code OpenFile::reach_disk() { return ::fsync(number_) == 0 ? std::error_code() : last_error(); }
 
 std::error_code OpenFile::close() {

@@ -108,6 +108,11 @@ std::error_code OpenFile::write(std::span<const std::byte> content) {
     return {};
 }
 
+bool OpenFile::lock() {
+    OVERLAPPED from_start{};
+    return ::LockFileEx(reinterpret_cast<HANDLE>(::_get_osfhandle(number_)),
+                        LOCKFILE_EXCLUSIVE_LOCK | LOCKFILE_FAIL_IMMEDIATELY, 0, 1, 0, &from_start) != 0;
+}
 std::error_code OpenFile::reach_disk() { return ::_commit(number_) == 0 ? std::error_code() : last_error(); }
 
 std::error_code OpenFile::close() {
