@@ -163,8 +163,8 @@ TEST(Documents, SentencesAreStatements) {
 
 TEST(Documents, EveryFlagIsRunByATest) {
     // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
-    // CMake's and pkg-config's.
-    std::set<std::string> run{"--build", "--install", "--prefix", "--test-dir", "--cflags", "--libs"};
+    // Cargo's, CMake's and pkg-config's.
+    std::set<std::string> run{"--manifest-path", "--build", "--install", "--prefix", "--test-dir", "--cflags", "--libs"};
     for (const EffectInfo* const effect : all_effects()) {
         const std::string name = flag_name(effect->name);
         run.insert({name, "--no-" + name.substr(2), name + "-enabled"});

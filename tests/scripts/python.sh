@@ -20,7 +20,7 @@ symbols=$(nm -D --defined-only "$work"/installed/darkroom/_engine*.so | awk '{ p
 mkdir -p "$work/other/numpy"
 echo '__version__ = "2.4"' >"$work/other/numpy/__init__.py"
 if "$python" -c 'import sys, pybind11; sys.exit(pybind11.version_info >= (2, 12))'; then
-    said=$(PYTHONPATH=$work/other:$work/installed "$python" -c 'import darkroom' 2>&1 | tail -n 1)
+    said=$(PYTHONPATH=$work/other:$work/installed "$python" -c 'import darkroom' 2>&1 | tail -n 1) || true
     [[ $said == *"for numpy 1, and numpy 2.4 is here: pip install 'numpy<2'"* ]] || { echo "numpy 2: $said" && exit 1; }
 fi
 cd "$tree/programs/python/tests"

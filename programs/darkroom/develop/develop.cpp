@@ -400,7 +400,6 @@ class Develop {
 
     /// Where it is not what was left out of the frame before.
     void tell_of_what_is_left_out(std::size_t i, const std::vector<std::string>& left_out) {
-        if (i == 0) warn_of_no_perspective(*composer_, items_[i].input.time, items_[i].input.camera);
         if (last_left_out_ && *last_left_out_ == left_out) return;
         const std::string frame = job_.steps.size() > 1 ? shown(i) + ": " : "";
         const std::size_t told = warn_of_what_is_left_out(job_.look, *composer_, left_out, frame);

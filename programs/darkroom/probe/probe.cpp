@@ -104,7 +104,6 @@ class Probe {
         darkroom::Developer developer(*device_, develop_);
         DARKROOM_TRY_VALUE(const darkroom::DevelopedPicture picture, developer.develop(*composer_, input_));
         warn_of_what_is_left_out(look_, *composer_, developer.plan().left_out);
-        warn_of_no_perspective(*composer_, input_.time, input_.camera);
         darkroom::Prober prober(*device_, develop_, static_cast<std::uint32_t>(at.size()));
         DARKROOM_TRY_VALUE(darkroom::Inspection seen, prober.probe(*composer_, input_, at));
         Report out{.extent = input_.extent, .time = input_.time, .frame_index = input_.frame_index, .pixels = {}};

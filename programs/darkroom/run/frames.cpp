@@ -272,19 +272,6 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
     return told;
 }
 
-void warn_of_no_perspective(const darkroom::Composer& composer, double time, const Camera& camera) {
-    // Clip space's w is the distance, but for rays that run side by side. Of a frame without depth nobody asks.
-    if (camera.projection[11] != 0 || camera.projection == darkroom::identity_matrix) return;
-    for (std::size_t i = 0; i < composer.size(); ++i) {
-        const darkroom::Handle entry = composer.entry(i);
-        if (composer.info(entry)->name != "depth_of_field") continue;
-        const darkroom::Composer::EntryValues values = composer.values_at(entry, time, camera);
-        if (values.is_enabled && values.opacity != 0)
-            warn(fmt::format("left out: {}: needs a camera with perspective, and this one is orthographic",
-                             composer.desc(entry)->name));
-    }
-}
-
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,
                                               const darkroom::DevelopDesc& desc,
                                               darkroom::ReferenceHistories& histories,

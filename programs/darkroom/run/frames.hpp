@@ -47,8 +47,6 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame = {});
-/// A warning for each entry that is on and changes nothing because the camera's rays run side by side: it has no lens.
-void warn_of_no_perspective(const darkroom::Composer& composer, double time, const darkroom::Camera& camera);
 /// By the CPU references alone, in the form that the target asks for. `histories`: of the frame before, then of this
 /// one. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
