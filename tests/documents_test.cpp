@@ -164,15 +164,15 @@ TEST(Documents, SentencesAreStatements) {
 TEST(Documents, EveryFlagIsRunByATest) {
     // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
     // Cargo's, CMake's and pkg-config's.
-    std::set<std::string> run{"--manifest-path", "--build", "--install", "--prefix", "--test-dir", "--cflags", "--libs"};
+    std::set<std::string> run{"--manifest-path", "--build",  "--install", "--prefix",
+                              "--test-dir",      "--cflags", "--libs"};
     for (const EffectInfo* const effect : all_effects()) {
         const std::string name = flag_name(effect->name);
         run.insert({name, "--no-" + name.substr(2), name + "-enabled"});
         for (const ParamInfo& row : effect->parameters.rows) run.insert(flag_name(flat_key(effect->name, row.name)));
     }
     const std::string tests = all_text({"tests", "engine", "files", "run", "scenes", "edit", "proof"}, "_test.cpp") +
-                              all_text({"tests/scripts"}, ".sh") +
-                              test::content(source / "docs/recipes.md");
+                              all_text({"tests/scripts"}, ".sh") + test::content(source / "docs/recipes.md");
     std::string pages = test::content(source / "README.md");
     for (const auto& page : fs::directory_iterator(source / "docs"))
         // Measurements tell of a program of their own.
