@@ -782,7 +782,7 @@ void expect_equal_pictures(std::uint32_t first, std::uint32_t seeds, int steps) 
         went_on += run.trails_that_went_on();
         failed += run.failed_compiles();
     }
-    EXPECT_GT(went_on, seeds) << "few histories went on";
+    EXPECT_GT(went_on, seeds / 2) << "few histories went on";
     EXPECT_GT(failed, seeds / 2) << "few compiles failed";
 }
 
