@@ -73,7 +73,6 @@ std::optional<TransferCurve> curve_of(Bytes curve) {
         const std::size_t count = number(curve, 8);
         if (count == 0) return TransferCurve{};
         if (piece(curve, 12, count * 2).empty()) return std::nullopt;
-        // Two bytes at its end are read as four, of which the last two are not there.
         const auto entry = [&](std::size_t i) {
             return std::to_integer<unsigned>(curve[12 + 2 * i]) * 256.0 + std::to_integer<unsigned>(curve[13 + 2 * i]);
         };

@@ -58,9 +58,8 @@ bool is_of_any_picture(std::string_view name) {
     constexpr std::string_view names =
         "|altitude|aperture|artist|ascframingdecisionlist|capdate|capturerate|comments|copyright|date|datetime|"
         "description|document name|effectivefocallength|entrancepupiloffset|envmap|exposuretime|exptime|file|fnumber|"
-        "focallength|focus|frame|generatedby|frame "
-        "range|framespersecond|host|hostcomputer|hostname|imagecounter|imagedescription|"
-        "isospeed|keycode|latitude|longitude|make|marker|memory|model|nominalfocallength|note|owner|"
+        "focallength|focus|frame|frame range|framespersecond|generatedby|host|hostcomputer|hostname|imagecounter|"
+        "imagedescription|isospeed|keycode|latitude|longitude|make|marker|memory|model|nominalfocallength|note|owner|"
         "pinholefocallength|pixelaspectratio|reelname|rendertime|scene|sequencer strip|shot|show|shutterangle|"
         "software|take|time|timecode|title|tstop|utcoffset|view|worldtocamera|worldtondc|xdensity|";
     constexpr std::array<std::string_view, 14> starts{"cycles.",      "arnold/", "camera",    "darkroom:", "exif:",
