@@ -19,17 +19,17 @@ using TableColor = std::array<double, 3>;
 
 namespace table_detail {
 
-/// A place among `count` entries: the lower of two neighbours, and how far it is to the upper one. NaN is the first.
+/// A place among `count` entries: two neighbours, and how far it is from the first of them. NaN is the first entry.
 struct Place {
-    std::size_t index = 0;
+    std::array<std::size_t, 2> entries{};
     double fraction = 0;
 };
 
 inline Place place_of(double value, double min, double max, std::uint32_t count) {
     const double at = (value - min) / (max - min) * (count - 1.0);
     const double inside = at > 0 ? std::min(at, count - 1.0) : 0.0;
-    const auto index = std::min(static_cast<std::size_t>(inside), static_cast<std::size_t>(count) - 2);
-    return {index, inside - static_cast<double>(index)};
+    const auto index = static_cast<std::size_t>(inside);
+    return {{index, std::min(index + 1, std::size_t{count} - 1)}, inside - static_cast<double>(index)};
 }
 
 class Cube {
@@ -68,8 +68,8 @@ class Cube {
   private:
     [[nodiscard]] double fraction(std::size_t axis) const { return places_[axis].fraction; }
     void add(TableColor& out, const std::array<std::size_t, 3>& corner, double weight) const {
-        const std::size_t r = places_[0].index + corner[0], g = places_[1].index + corner[1],
-                          b = places_[2].index + corner[2];
+        const std::size_t r = places_[0].entries[corner[0]], g = places_[1].entries[corner[1]],
+                          b = places_[2].entries[corner[2]];
         const float* const entry = &table_.cube[((b * table_.size + g) * table_.size + r) * 3];
         for (std::size_t i = 0; i < 3; ++i) out[i] += weight * double{entry[i]};
     }
@@ -85,9 +85,9 @@ class Cube {
 [[nodiscard]] inline TableColor evaluate(const ColorTable& table, TableColor color,
                                          TableInterpolation interpolation = TableInterpolation::Tetrahedral) {
     for (std::size_t i = 0; table.shaper_size > 0 && i < 3; ++i) {
-        const auto [index, fraction] = table_detail::place_of(color[i], double{table.shaper_min[i]},
-                                                              double{table.shaper_max[i]}, table.shaper_size);
-        const double low{table.shaper[index * 3 + i]}, high{table.shaper[(index + 1) * 3 + i]};
+        const auto [entries, fraction] = table_detail::place_of(color[i], double{table.shaper_min[i]},
+                                                                double{table.shaper_max[i]}, table.shaper_size);
+        const double low{table.shaper[entries[0] * 3 + i]}, high{table.shaper[entries[1] * 3 + i]};
         color[i] = low * (1 - fraction) + high * fraction;
     }
     if (table.size == 0) return color;

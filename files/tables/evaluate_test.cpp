@@ -67,6 +67,16 @@ TEST(TablesEvaluate, BetweenEntriesItIsContinuousAndLinearOnTheDiagonal) {
     EXPECT_EQ(evaluate(cube, {0.5, 0.5, 0.5}, TableInterpolation::Trilinear), (TableColor{6.875, 7, 7.125}));
 }
 
+// What lies behind the last entry of a table that a host brings is not its own.
+TEST(TablesEvaluate, OneEntryIsReadAlone) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    ColorTable cube{.size = 1, .cube = {0.25f, 0.5f, 0.75f}}, shaper{.shaper_size = 1, .shaper = {0.25f, 0.5f, 0.75f}};
+    cube.cube.resize(24, nan);
+    shaper.shaper.resize(6, nan);
+    for (const ColorTable& table : {cube, shaper})
+        for (const auto how : both) EXPECT_EQ(evaluate(table, {0.3, 0, 7}, how), (TableColor{0.25, 0.5, 0.75}));
+}
+
 TEST(TablesEvaluate, BeyondItsInputsIsTheirEdgeAndNanTheFirst) {
     const ColorTable table = random_table(4, 9);
     const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
@@ -171,16 +181,23 @@ ResourceImage painted(std::uint32_t width, std::uint32_t height, std::uint32_t e
 
 TEST(TablesImage, SquaresAreTheSmootherOfTilesAndHaldCluts) {
     using Grade = std::function<TableColor(const TableColor&)>;
-    const std::vector<Grade> grades{
-        [](const TableColor& c) { return c; },
-        [](const TableColor& c) { return TableColor{1 - c[0], c[1] * c[1], std::sqrt(c[2])}; },
-        [](const TableColor& c) {
-            const double grey = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-            return TableColor{grey, 0.8 * grey, 0.6 * grey};
-        },
-        [](const TableColor& c) { return TableColor{c[2], c[2], c[2]}; },
-        [](const TableColor& c) { return TableColor{c[1], c[1], c[1]}; },
-        [](const TableColor& c) { return TableColor{std::floor(c[0] * 4) / 4, c[1] > 0.5 ? 1.0 : 0, c[2]}; }};
+    const std::vector<Grade> grades{[](const TableColor& c) { return c; },
+                                    [](const TableColor& c) {
+                                        return TableColor{1 - c[0], c[1] * c[1], std::sqrt(c[2])};
+                                    },
+                                    [](const TableColor& c) {
+                                        const double grey = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+                                        return TableColor{grey, 0.8 * grey, 0.6 * grey};
+                                    },
+                                    [](const TableColor& c) {
+                                        return TableColor{c[2], c[2], c[2]};
+                                    },
+                                    [](const TableColor& c) {
+                                        return TableColor{c[1], c[1], c[1]};
+                                    },
+                                    [](const TableColor& c) {
+                                        return TableColor{std::floor(c[0] * 4) / 4, c[1] > 0.5 ? 1.0 : 0, c[2]};
+                                    }};
     for (const std::uint32_t level : {2u, 4u, 8u}) {
         const std::uint32_t edge = level * level, side = edge * level;
         const auto tile_at = [&](std::uint32_t x, std::uint32_t y) {
