@@ -13,6 +13,7 @@
 
 #include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
+#include "gpu/resource/barriers.hpp"
 
 namespace darkroom::window {
 
@@ -427,22 +428,13 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
 
 void Presenter::State::change_layout(VkImageLayout from, VkImageLayout to) const {
     const bool is_new = to == VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    const VkImageMemoryBarrier2 change{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .srcStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-        .srcAccessMask = is_new ? VK_ACCESS_2_NONE : VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-        .dstStageMask = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-        .dstAccessMask =
-            is_new ? VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT : VK_ACCESS_2_NONE,
-        .oldLayout = from,
-        .newLayout = to,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = frame.image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
-    context->vk.CmdPipelineBarrier2(frame.commands, &dependency);
+    constexpr VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+    constexpr VkAccessFlags2 read = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
+                             write = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+    const VkImageMemoryBarrier2 change = gpu::image_barrier(frame.image, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
+                                                            {stage, is_new ? VK_ACCESS_2_NONE : write, from},
+                                                            {stage, is_new ? read | write : VK_ACCESS_2_NONE, to});
+    gpu::record_barriers(context->vk, frame.commands, {&change, 1});
 }
 
 Result<> Presenter::State::end() {

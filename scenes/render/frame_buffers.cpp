@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "gpu/resource/barriers.hpp"
+
 namespace darkroom::render {
 
 Result<> check_storage(const gpu::Context& context, VkDeviceSize size, std::string_view name) {
@@ -52,23 +54,11 @@ Result<> FrameBuffers::reserve_positions(gpu::Context& context, std::size_t coun
 void FrameBuffers::use_position(const gpu::Context& context, VkCommandBuffer commands, std::size_t index) const {
     constexpr VkPipelineStageFlags2 readers =
         VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    const auto barrier = [&](const VkMemoryBarrier2& memory) {
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
-        context.vk.CmdPipelineBarrier2(commands, &dependency);
-    };
-    barrier({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-             .srcStageMask = readers | VK_PIPELINE_STAGE_2_COPY_BIT,
-             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-             .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-             .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT});
+    gpu::record_barrier(context.vk, commands, {readers | VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                        gpu::copied_to);
     const VkBufferCopy copy{index * sizeof(blocks::Frame), 0, sizeof(blocks::Frame)};
     context.vk.CmdCopyBuffer(commands, positions_.info().buffer, frame_.info().buffer, 1, &copy);
-    barrier({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-             .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-             .dstStageMask = readers,
-             .dstAccessMask = VK_ACCESS_2_UNIFORM_READ_BIT});
+    gpu::record_barrier(context.vk, commands, gpu::copied_to, {readers, VK_ACCESS_2_UNIFORM_READ_BIT});
 }
 
 Result<> FrameBuffers::reserve(gpu::Context& context, const Counts& counts) {

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "gpu/resource/barriers.hpp"
+
 namespace darkroom::render {
 
 namespace {
@@ -15,11 +17,7 @@ constexpr VkAccessFlags2 depth_access =
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 constexpr VkPipelineStageFlags2 copy_stages = VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT;
 
-struct Use {
-    VkPipelineStageFlags2 stages = 0;
-    VkAccessFlags2 access = 0;
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-};
+using gpu::Use;
 
 /// Of the host and its effects, which it knows and we do not; what they left is not needed.
 constexpr Use unknown_use{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT};
@@ -30,25 +28,10 @@ class Barriers {
   public:
     void add(const gpu::Image& image, const Use& before, const Use& after) {
         if (image.handle == VK_NULL_HANDLE) return;
-        const bool is_depth = (image.info.usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
-        const VkImageAspectFlags aspect = is_depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-        list_.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                         .srcStageMask = before.stages,
-                         .srcAccessMask = before.access,
-                         .dstStageMask = after.stages,
-                         .dstAccessMask = after.access,
-                         .oldLayout = before.layout,
-                         .newLayout = after.layout,
-                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                         .image = image.handle,
-                         .subresourceRange = {aspect, 0, 1, 0, 1}});
+        list_.push_back(gpu::image_barrier(image, before, after));
     }
     void record(const gpu::Context& context, VkCommandBuffer commands) const {
-        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                          .imageMemoryBarrierCount = static_cast<std::uint32_t>(list_.size()),
-                                          .pImageMemoryBarriers = list_.data()};
-        context.vk.CmdPipelineBarrier2(commands, &dependency);
+        gpu::record_barriers(context.vk, commands, list_);
     }
 
   private:
@@ -176,10 +159,7 @@ void Targets::begin_rendering(VkCommandBuffer commands, VkAttachmentLoadOp load,
 
 void Targets::copy_before_transparency(VkCommandBuffer commands) const {
     context_->vk.CmdEndRendering(commands);
-    constexpr Use copied_from{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-    constexpr Use copied_to{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+    using gpu::copied_from, gpu::copied_to;
     Barriers before;
     before.add(color, color_attachment, copied_from);
     before.add(transparency, unknown_use, copied_to);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "compared_picture.hpp"
 
-#include "gpu/device/context.hpp"
+#include "gpu/resource/barriers.hpp"
 
 namespace app {
 
@@ -21,20 +21,12 @@ void ComparedPicture::record(const darkroom::Device& device, VkCommandBuffer com
     const darkroom::gpu::Context& context = device.context();
     upload_.record(context, commands);
     image_ = upload_.frame({}).color;
-    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-                                       .oldLayout = image_.layout,
-                                       .newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .image = image_.image,
-                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
+    const VkImageMemoryBarrier2 change = darkroom::gpu::image_barrier(
+        image_.image, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
+        {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, image_.layout},
+        {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    darkroom::gpu::record_barriers(context.vk, commands, {&change, 1});
     image_.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     picture_.picture = {};
 }

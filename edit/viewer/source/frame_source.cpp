@@ -8,6 +8,7 @@
 #include "core/text/param_text.hpp"
 #include "core/thread/parallel.hpp"
 #include "gpu/device/context.hpp"
+#include "gpu/resource/barriers.hpp"
 #include "image/frame/sequence.hpp"
 
 namespace app {
@@ -38,8 +39,7 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& devic
 
 void FrameSource::start() {
     thread_ = darkroom::start_thread([this] { work(); });
-    if (!thread_)
-        warnings_.emplace_back("no further thread can be started: the window waits while frames are read");
+    if (!thread_) warnings_.emplace_back("no further thread can be started: the window waits while frames are read");
 }
 
 // Whatever a file makes a decoder do, the thread that reads goes on.
@@ -174,27 +174,18 @@ Result<> FrameSource::record(VkCommandBuffer commands) {
     std::vector<VkImageMemoryBarrier2> changes;
     const auto settle = [&](darkroom::ImageRef& image, VkImageAspectFlags aspect) {
         if (!image.is_given()) return;
-        changes.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                           .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                           .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                           .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                           .oldLayout = image.layout,
-                           .newLayout = image.final_layout,
-                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                           .image = image.image,
-                           .subresourceRange = {aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}});
+        changes.push_back(darkroom::gpu::image_barrier(
+            image.image, {aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS},
+            {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, image.layout},
+            {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+             image.final_layout}));
         image.layout = image.final_layout;
     };
     for (darkroom::ImageRef* const image : {&frame_.color, &frame_.depth, &frame_.normals, &frame_.velocity,
                                             &frame_.reactive, &frame_.transparency, &frame_.exposure})
         settle(*image, VK_IMAGE_ASPECT_COLOR_BIT);
     for (darkroom::Light& light : lights_) settle(light.cascades, VK_IMAGE_ASPECT_DEPTH_BIT);
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .imageMemoryBarrierCount = static_cast<std::uint32_t>(changes.size()),
-                                      .pImageMemoryBarriers = changes.data()};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
+    darkroom::gpu::record_barriers(context.vk, commands, changes);
     frame_.lights = lights_;
     return {};
 }

@@ -10,6 +10,7 @@
 #include "compose/chain/camera_jump.hpp"
 #include "compose/chain/frame_check.hpp"
 #include "core/assert.hpp"
+#include "gpu/resource/barriers.hpp"
 #include "gpu/resource/formats.hpp"
 #include "plan/frame_inputs.hpp"
 
@@ -184,23 +185,13 @@ void Chain::leave_unused(VkCommandBuffer commands, const Frame& frame) const {
         });
         const auto barrier = graph::barrier_of_unused(state);
         if (is_later || !barrier) return;
-        const VkImageMemoryBarrier2 one{
-            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-            .srcStageMask = barrier->source_stages,
-            .srcAccessMask = barrier->source_access,
-            .dstStageMask = barrier->target_stages,
-            .dstAccessMask = barrier->target_access,
-            .oldLayout = barrier->old_layout,
-            .newLayout = barrier->new_layout,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .image = image.image,
-            .subresourceRange = {barrier->is_depth_alone ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
-                                                         : gpu::format_traits(image.format).aspects,
-                                 image.mip_level, 1, image.array_layer, image.layer_count}};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &one};
-        context_.vk.CmdPipelineBarrier2(commands, &dependency);
+        const VkImageAspectFlags aspects = barrier->is_depth_alone ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                                   : gpu::format_traits(image.format).aspects;
+        const VkImageMemoryBarrier2 one =
+            gpu::image_barrier(image.image, {aspects, image.mip_level, 1, image.array_layer, image.layer_count},
+                               {barrier->source_stages, barrier->source_access, barrier->old_layout},
+                               {barrier->target_stages, barrier->target_access, barrier->new_layout});
+        gpu::record_barriers(context_.vk, commands, {&one, 1});
     });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gpu/resource/barriers.hpp"
 #include "gpu/resource/format_use.hpp"
 
 namespace darkroom::compose {
@@ -116,31 +117,18 @@ void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
         batch->uploaded_by = recording;
         for (const Table& table : batch->tables) {
             const gpu::Dispatch& vk = table.image.context->vk;
-            VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                          .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                          .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                          .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-                                          .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                          .image = table.image.handle,
-                                          .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-            const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                              .imageMemoryBarrierCount = 1,
-                                              .pImageMemoryBarriers = &barrier};
-            vk.CmdPipelineBarrier2(commands, &dependency);
+            const VkImageMemoryBarrier2 empty = gpu::image_barrier(table.image, {}, gpu::copied_to);
+            gpu::record_barriers(vk, commands, {&empty, 1});
             const VkBufferImageCopy copy{.bufferOffset = table.offset,
                                          .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                          .imageExtent = table.image.info.extent};
             vk.CmdCopyBufferToImage(commands, batch->staged, table.image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                     1, &copy);
-            barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-            barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-            barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-            barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-            barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-            barrier.newLayout = table.layout;
-            vk.CmdPipelineBarrier2(commands, &dependency);
+            const VkImageMemoryBarrier2 filled = gpu::image_barrier(
+                table.image, gpu::copied_to,
+                {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                 VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, table.layout});
+            gpu::record_barriers(vk, commands, {&filled, 1});
         }
     }
 }

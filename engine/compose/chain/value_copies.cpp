@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "gpu/device/context.hpp"
+#include "gpu/resource/barriers.hpp"
 
 namespace darkroom::compose {
 
@@ -40,14 +40,7 @@ void ValueCopies::record(VkCommandBuffer commands, std::uint32_t slot, std::size
 }
 
 void ValueCopies::end(VkCommandBuffer commands, std::uint32_t slot, const Recording& recording) {
-    const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
-    context_->vk.CmdPipelineBarrier2(commands, &dependency);
+    gpu::record_barrier(context_->vk, commands, gpu::copied_to, gpu::read_by_host);
     written_[slot] = recording;
 }
 

@@ -115,32 +115,4 @@ Result<> submit_and_wait(Context& context, std::string_view what, const std::fun
     return submission ? submission->wait() : failure(std::move(submission));
 }
 
-void transition(const Context& context, VkCommandBuffer commands, const Image& image, VkImageLayout from,
-                VkImageLayout to) {
-    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .oldLayout = from,
-                                       .newLayout = to,
-                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .image = image.handle,
-                                       .subresourceRange = {format_traits(image.info.format).aspects, 0,
-                                                            VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
-    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-    const bool was_read = from == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .memoryBarrierCount = was_read ? 1u : 0u,
-                                      .pMemoryBarriers = &to_host,
-                                      .imageMemoryBarrierCount = 1,
-                                      .pImageMemoryBarriers = &change};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
-}
-
 }  // namespace darkroom::gpu

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "gpu/resource/barriers.hpp"
 #include "gpu/resource/formats.hpp"
 
 namespace darkroom::graph {
@@ -26,34 +27,16 @@ constexpr VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_
 
 void record_wait(VkCommandBuffer commands, const gpu::Dispatch& vk, VkPipelineStageFlags2 from,
                  VkPipelineStageFlags2 to) {
-    const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                               .srcStageMask = from,
-                               .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                               .dstStageMask = to,
-                               .dstAccessMask = any_access};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
-    vk.CmdPipelineBarrier2(commands, &dependency);
+    gpu::record_barrier(vk, commands, {from, VK_ACCESS_2_MEMORY_WRITE_BIT}, {to, any_access});
 }
 
 /// Brings a whole image into another layout, after everything before and before everything after.
 void record_transition(VkCommandBuffer commands, const gpu::Dispatch& vk, const gpu::Image& image, VkImageLayout from,
                        VkImageLayout to) {
-    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .dstAccessMask = any_access,
-                                       .oldLayout = from,
-                                       .newLayout = to,
-                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .image = image.handle,
-                                       .subresourceRange = {gpu::format_traits(image.info.format).aspects, 0,
-                                                            VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
-    vk.CmdPipelineBarrier2(commands, &dependency);
+    constexpr VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    const VkImageMemoryBarrier2 change =
+        gpu::image_barrier(image, {all, VK_ACCESS_2_MEMORY_WRITE_BIT, from}, {all, any_access, to});
+    gpu::record_barriers(vk, commands, {&change, 1});
 }
 
 }  // namespace
@@ -194,33 +177,18 @@ void Physical::record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk
                 memory.dstAccessMask |= barrier.target_access;
             }
             if (entry.buffer.size != 0) continue;
-            batch[images] = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                             .srcStageMask = barrier.source_stages,
-                             .srcAccessMask = barrier.source_access,
-                             .dstStageMask = barrier.target_stages,
-                             .dstAccessMask = barrier.target_access,
-                             .oldLayout = barrier.old_layout,
-                             .newLayout = barrier.new_layout,
-                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .image = handle(barrier.slot, view_index),
-                             .subresourceRange = {.aspectMask = barrier.is_depth_alone
-                                                                    ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
-                                                                    : gpu::format_traits(entry.format).aspects,
-                                                  .baseMipLevel = entry.base_mip_level + barrier.mips.first,
-                                                  .levelCount = barrier.mips.count,
-                                                  .baseArrayLayer = entry.base_array_layer,
-                                                  .layerCount = entry.array_layers}};
+            const VkImageAspectFlags aspects = barrier.is_depth_alone ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                                      : gpu::format_traits(entry.format).aspects;
+            batch[images] = gpu::image_barrier(handle(barrier.slot, view_index),
+                                               {aspects, entry.base_mip_level + barrier.mips.first, barrier.mips.count,
+                                                entry.base_array_layer, entry.array_layers},
+                                               {barrier.source_stages, barrier.source_access, barrier.old_layout},
+                                               {barrier.target_stages, barrier.target_access, barrier.new_layout});
             DARKROOM_ASSERT(batch[images].image != VK_NULL_HANDLE);
             ++images;
         }
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-            .memoryBarrierCount = (memory.srcStageMask | memory.srcAccessMask) != 0 ? 1u : 0u,
-            .pMemoryBarriers = &memory,
-            .imageMemoryBarrierCount = images,
-            .pImageMemoryBarriers = batch.data()};
-        vk.CmdPipelineBarrier2(commands, &dependency);
+        const std::size_t all_memory = (memory.srcStageMask | memory.srcAccessMask) != 0 ? 1 : 0;
+        gpu::record_barriers(vk, commands, {batch.data(), images}, {&memory, all_memory});
         barriers = barriers.subspan(count);
     }
 }

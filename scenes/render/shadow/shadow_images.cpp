@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "gpu/resource/barriers.hpp"
 #include "render/shadow/casters.hpp"
 
 namespace darkroom::render {
@@ -39,25 +40,20 @@ Result<gpu::Image> create_map(gpu::Context& context, std::string name, VkExtent2
     return image;
 }
 
-VkImageMemoryBarrier2 map_barrier(const gpu::Image& map) {
-    return {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .image = map.handle,
-            .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, map.info.array_layers}};
-}
-
 constexpr VkPipelineStageFlags2 depth_stages =
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
 constexpr VkPipelineStageFlags2 reading_stages =
     VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
-void record_barriers(const gpu::Context& context, VkCommandBuffer commands,
-                     std::span<const VkImageMemoryBarrier2> barriers) {
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size()),
-                                      .pImageMemoryBarriers = barriers.data()};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
+constexpr gpu::Use written{
+    depth_stages, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+    VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+
+void change(const gpu::Context& context, VkCommandBuffer commands, std::span<const gpu::Image* const> maps,
+            const gpu::Use& before, const gpu::Use& after) {
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (const gpu::Image* map : maps) barriers.push_back(gpu::image_barrier(*map, before, after));
+    gpu::record_barriers(context.vk, commands, barriers);
 }
 
 }  // namespace
@@ -98,31 +94,12 @@ Result<VkSampler> create_shadow_sampler(gpu::Context& context) {
 }
 
 void begin_writing(const gpu::Context& context, VkCommandBuffer commands, std::span<const gpu::Image* const> maps) {
-    std::vector<VkImageMemoryBarrier2> barriers;
-    for (const gpu::Image* map : maps) {
-        VkImageMemoryBarrier2& barrier = barriers.emplace_back(map_barrier(*map));
-        barrier.srcStageMask = reading_stages;
-        barrier.dstStageMask = depth_stages;
-        barrier.dstAccessMask =
-            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-        barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-        barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-    }
-    record_barriers(context, commands, barriers);
+    change(context, commands, maps, {reading_stages}, written);
 }
 
 void begin_reading(const gpu::Context& context, VkCommandBuffer commands, std::span<const gpu::Image* const> maps) {
-    std::vector<VkImageMemoryBarrier2> barriers;
-    for (const gpu::Image* map : maps) {
-        VkImageMemoryBarrier2& barrier = barriers.emplace_back(map_barrier(*map));
-        barrier.srcStageMask = depth_stages;
-        barrier.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-        barrier.dstStageMask = reading_stages;
-        barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-        barrier.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    }
-    record_barriers(context, commands, barriers);
+    change(context, commands, maps, written,
+           {reading_stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
 }
 
 }  // namespace darkroom::render

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gpu/resource/barriers.hpp"
+
 namespace darkroom::render {
 
 namespace {
@@ -78,14 +80,8 @@ Result<> Uploader::flush() {
             gpu::transition(*context_, commands, *copy.target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
         }
-        const VkMemoryBarrier2 written{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &written};
-        vk.CmdPipelineBarrier2(commands, &dependency);
+        gpu::record_barrier(vk, commands, gpu::copied_to,
+                            {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
     });
     buffer_copies_.clear();
     image_copies_.clear();
