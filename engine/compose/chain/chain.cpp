@@ -76,7 +76,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
         worker_.discard(*staging);
     value_copies_.begin(slot_);
     physical_->begin(commands, context_.vk, *schedule_, frame.view);
-    const bool is_timed = timers_.pool != VK_NULL_HANDLE;
+    const bool is_timed = !timers_.pools.empty();
     if (is_timed) {
         // Which queries are a finished recording's, a device that resets none at once tells when the slot comes round.
         if (!timers_.is_reset && recordings_ >= desc_.slots) static_cast<void>(read_times(slot_));

@@ -23,20 +23,23 @@ Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32
     const VkQueryPoolCreateInfo create_info{
         .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
         .queryType = VK_QUERY_TYPE_TIMESTAMP,
-        .queryCount = slots * marks,
+        .queryCount = marks,
     };
-    DARKROOM_TRY(context.check(
-        cleared_on_failure(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
-                           timers.pool),
-        "creating the timestamp queries"));
     timers.is_reset = context.traits.has_host_query_reset;
-    if (timers.is_reset) context.vk.ResetQueryPool(context.device, timers.pool, 0, slots * marks);
+    timers.pools.resize(slots);
+    for (VkQueryPool& pool : timers.pools) {
+        DARKROOM_TRY(
+            context.check(cleared_on_failure(
+                              context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &pool), pool),
+                          "creating the timestamp queries"));
+        if (timers.is_reset) context.vk.ResetQueryPool(context.device, pool, 0, marks);
+    }
     return timers;
 }
 
 Timers::Timers(Timers&& other) noexcept { *this = std::move(other); }
 Timers& Timers::operator=(Timers&& other) noexcept {
-    std::swap(pool, other.pool);
+    std::swap(pools, other.pools);
     std::swap(is_reset, other.is_reset);
     std::swap(marks, other.marks);
     std::swap(ticks, other.ticks);
@@ -44,27 +47,27 @@ Timers& Timers::operator=(Timers&& other) noexcept {
     return *this;
 }
 Timers::~Timers() {
-    if (pool != VK_NULL_HANDLE) context->vk.DestroyQueryPool(context->device, pool, context->allocator);
+    for (VkQueryPool pool : pools) context->vk.DestroyQueryPool(context->device, pool, context->allocator);
 }
 
 void Timers::begin(VkCommandBuffer commands, std::uint32_t slot) {
-    if (pool == VK_NULL_HANDLE) return;
+    if (pools.empty()) return;
     // At once: what the slot's last recording left is not to be taken for this one's, which may never be submitted.
-    if (is_reset) context->vk.ResetQueryPool(context->device, pool, slot * marks, marks);
-    context->vk.CmdResetQueryPool(commands, pool, slot * marks, marks);
+    if (is_reset) context->vk.ResetQueryPool(context->device, pools[slot], 0, marks);
+    context->vk.CmdResetQueryPool(commands, pools[slot], 0, marks);
 }
 
 void Timers::mark(VkCommandBuffer commands, std::uint32_t slot, std::uint32_t index) {
     DARKROOM_ASSERT(index < marks);
-    if (pool == VK_NULL_HANDLE) return;
-    context->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool, slot * marks + index);
+    if (pools.empty()) return;
+    context->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools[slot], index);
 }
 
 std::size_t Timers::read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds) {
     DARKROOM_ASSERT(count <= marks);
-    if (pool == VK_NULL_HANDLE || count < 2) return 0;
+    if (pools.empty() || count < 2) return 0;
     const VkResult result =
-        context->vk.GetQueryPoolResults(context->device, pool, slot * marks, count, count * sizeof(std::uint64_t),
+        context->vk.GetQueryPoolResults(context->device, pools[slot], 0, count, count * sizeof(std::uint64_t),
                                         ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
     if (result != VK_SUCCESS) return 0;
     constexpr double milliseconds_per_ns = 1e-6;

@@ -40,15 +40,13 @@ TEST(Timers, AThousandPassesAreTimed) {
     Result<Timers> timers = Timers::create(context, 2, marks);
     ASSERT_TRUE(timers) << timers.error().text;
     shown().clear();
-    for (std::uint64_t i = 0; i < 2 * std::uint64_t{marks}; ++i) shown().push_back(i * i);
+    for (std::uint64_t i = 0; i < marks; ++i) shown().push_back(i * i);
     std::vector<double> milliseconds(marks - 1);
     ASSERT_EQ(timers->read(1, marks, milliseconds), marks - 1);
-    for (std::size_t i = 0; i < milliseconds.size(); ++i) {
-        const auto at = static_cast<double>(marks + i);
-        ASSERT_NEAR(milliseconds[i], (2 * at + 1) * 1e-3, 1e-9) << i;
-    }
+    for (std::size_t i = 0; i < milliseconds.size(); ++i)
+        ASSERT_NEAR(milliseconds[i], (2 * static_cast<double>(i) + 1) * 1e-3, 1e-9) << i;
     EXPECT_EQ(timers->read(1, marks, {milliseconds.data(), 7}), 7U) << "no more than there is room for";
-    shown().resize(marks);
+    shown().resize(marks - 1);
     EXPECT_EQ(timers->read(1, marks, milliseconds), 0U) << "not finished";
     const Timers moved = std::move(*timers);
     EXPECT_EQ(moved.ticks.size(), marks);
@@ -71,7 +69,7 @@ TEST(Timers, AreResetBeforeTheyAreReadWhereTheHostCan) {
     Result<Timers> timers = Timers::create(context, 3, 5);
     ASSERT_TRUE(timers) << timers.error().text;
     EXPECT_TRUE(timers->is_reset);
-    EXPECT_EQ(reset, (std::pair{0U, 15U}));
+    EXPECT_EQ(reset, (std::pair{0U, 5U})) << "of each of the three";
 }
 
 TEST(Timers, ACounterThatGoesRoundDoesNotMakeAPassLong) {

@@ -114,7 +114,9 @@ class Timers {
     /// Milliseconds between neighbouring marks of a finished recording; empty while it is not finished. Never waits.
     /// A slot may be read once it has begun in a recording that has finished, or from the start where is_reset.
     std::size_t read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds);
-    VkQueryPool pool = VK_NULL_HANDLE;
+    /// One a slot, none without timestamps: the validation layers of 2026 take the reset of a part for one of the
+    /// whole, which a recording under way may still write.
+    std::vector<VkQueryPool> pools;
     bool is_reset = false;  ///< by the host; else the first recording of a slot does it
     std::uint32_t marks = 0;
     std::vector<std::uint64_t> ticks;  ///< what read() reads, `marks` of them
