@@ -149,7 +149,7 @@ interface = {
     "low_health": ("health = 4", ""),
 }
 
-windows = ("play", "edit", "add", "scopes", "compare", "images", "pixel")
+windows = ("play", "edit", "add", "looks", "scopes", "compare", "images", "pixel")
 
 
 def block_before(page, picture):
@@ -387,6 +387,10 @@ class Maker:
             # Each effect's picture is made when it is seen.
             time.sleep(20)
             window.picture(place("viewer_add.jpg"), add)
+            window.xdotool("key", "Escape")
+            window.click("stack/looks")
+            time.sleep(20)
+            window.picture(place("viewer_looks.jpg"), add)
             window.xdotool("key", "Escape")
             window.click("tab/Scopes")
             window.click("view/false_colors")

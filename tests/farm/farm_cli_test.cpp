@@ -74,10 +74,41 @@ TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
     EXPECT_EQ(did["tries"], 1);
     EXPECT_EQ(did["made"], 2);
     EXPECT_NE(task.told.find("shot.0002.exr -> out/shot.0002.png"), std::string::npos) << task.told;
-    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 1-2").code, 0);
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 1-2 -- --exposure 2").code, 0);
     EXPECT_EQ(record("1-2")["tries"], 0) << "all was there";
-    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q").told, "");
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q -- --exposure 2").told, "");
     EXPECT_EQ(record("0-0")["made"], 1);
+}
+
+// Pictures of two looks in one folder are told by nobody afterwards.
+TEST_F(CliFarm, TasksThatNothingSubmittedAreHeldAgainstTheFirst) {
+    const std::string task = "darkroom farm task 'shot.####.exr' --look my.toml -o out/ --frames ";
+    const std::string elsewhere = "or write elsewhere with -o\n";
+    write("my.toml", "[post_process]\nexposure = 1.0\n");
+    ASSERT_EQ(run_lines(task + "0-1").code, 0);
+    write("my.toml", "[post_process]\nexposure = 2.0\n");
+    const Outcome changed = run_lines(task + "2");
+    EXPECT_EQ(changed.code, 1);
+    EXPECT_EQ(changed.err,
+              "darkroom: out/shot.farm: my.toml has changed since its pictures were made; "
+              "remove its pictures, " +
+                  elsewhere);
+    const Outcome other = run_lines(task + "2 -- --exposure 2");
+    EXPECT_EQ(other.code, 1);
+    EXPECT_EQ(other.err,
+              "darkroom: out/shot.farm: its pictures were made with other arguments "
+              "(shot.####.exr -o out/ --look my.toml); remove it, " +
+                  elsewhere);
+    EXPECT_FALSE(fs::exists(path(out("out", 2))));
+    for (const int number : {0, 1}) fs::remove(path(out("out", number)));
+    EXPECT_EQ(run_lines(task + "2").code, 0) << "none of them is left";
+}
+
+TEST_F(CliFarm, FramesWithoutInputAreTold) {
+    const Outcome task = run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 2-5");
+    EXPECT_EQ(task.code, 0);
+    EXPECT_NE(task.err.find("--frames 2-5: no input of shot.####.exr has these numbers: 3-5\n"), std::string::npos)
+        << task.err;
 }
 
 // Slurm sends the task a signal, and not what it has started; nobody can pass SIGKILL on.

@@ -129,6 +129,8 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
                         "unexpected 'shot.0001.exr': allowed is one INPUT, and flags of develop after --");
     expect_farm_refuses(shot + "-- --exposur 2", 1,
                         "develop: unknown argument '--exposur', did you mean '--exposure'?");
+    expect_farm_refuses(shot + "--ssao-samples 64", 1,
+                        "farm slurm: unknown argument '--ssao-samples'; flags of develop and render stand behind --");
     expect_farm_refuses(shot + "-- --exposure 2000", 1, "--exposure = 2000: allowed is [0, 1024] x");
     expect_farm_refuses(shot + "--look none.toml", 1, "none.toml: there is no such file");
     expect_farm_refuses(shot + "--frames 20-30", 1, "--frames 20-30: none of the 12 inputs has such a number");

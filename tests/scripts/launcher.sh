@@ -97,13 +97,19 @@ touch "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 
 # What one command alone needs is built when that is first asked for, and again when sources changed since.
 builds_viewer() {
     : >"$STUB_LOG"
-    "$tree/darkroom" "$1" >"$work/out" 2>"$work/said"
+    DISPLAY=:0 "$tree/darkroom" "$1" >"$work/out" 2>"$work/said"
     [[ $(grep -c -- '--target darkroom_program darkroom_viewer$' "$STUB_LOG") == "$2" ]] || fail "$3"
 }
 builds_viewer play 1 "the viewer is not built when it is first asked for"
 grep -q 'building darkroom_viewer, a part' "$work/said" || fail "the first window does not say what it waits for"
 builds_viewer edit 0 "the viewer is built twice"
 builds_viewer render 0 "render builds the viewer"
+: >"$STUB_LOG"
+! env -u DISPLAY -u WAYLAND_DISPLAY -u WAYLAND_SOCKET "$tree/darkroom" edit >"$work/out" 2>"$work/said" ||
+    fail "a window without a display"
+[[ ! -s $STUB_LOG ]] && grep -q 'no window can be opened: neither DISPLAY nor WAYLAND_DISPLAY is set' "$work/said" ||
+    fail "the viewer is built where no window can be opened"
+env -u DISPLAY -u WAYLAND_DISPLAY "$tree/darkroom" edit --help >"$work/out" 2>"$work/said" || fail "no help without a display"
 touch "$tree/effects/two.glsl" && builds_viewer render 0 "render builds the viewer after a source changed"
 builds_viewer play 1 "the viewer is not built again after a source changed"
 : >"$STUB_LOG"

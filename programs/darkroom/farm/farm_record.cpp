@@ -214,14 +214,22 @@ bool has_arguments(const FarmJob& job, const std::vector<std::string>& arguments
     return Json(job.arguments).dump() == Json(arguments).dump();
 }
 
+Result<> check_arguments(const fs::path& folder, const FarmJob& job, const std::vector<std::string>& now) {
+    if (has_arguments(job, now)) return {};
+    return darkroom::user_error(
+        fmt::format("{}: its pictures were made with other arguments ({}); remove it, or write elsewhere with -o",
+                    printable(folder.string()), printable(fmt::format("{}", fmt::join(job.arguments, " ")))));
+}
+
 Result<> check_inputs(const fs::path& folder, const FarmJob& job, const FarmInputs& now) {
     if (job.inputs.empty()) return {};
     FarmInputs changed;  // those of one of the two that the other has not
     std::ranges::set_symmetric_difference(job.inputs, now, std::inserter(changed, changed.end()));
     if (changed.empty()) return {};
+    const std::string since = job.id.empty() ? "its pictures were made" : fmt::format("job {} was submitted", job.id);
     return darkroom::user_error(
-        fmt::format("{}: {} has changed since job {} was submitted; remove its pictures, or write elsewhere with -o",
-                    printable(folder.string()), changed.begin()->first, job.id));
+        fmt::format("{}: {} has changed since {}; remove its pictures, or write elsewhere with -o",
+                    printable(folder.string()), changed.begin()->first, since));
 }
 
 Result<> write_job(const fs::path& folder, const FarmJob& job) {

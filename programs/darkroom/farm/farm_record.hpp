@@ -43,7 +43,7 @@ struct FarmJob {
     std::vector<std::string> arguments;  ///< of each task, but for its frames
     FarmInputs inputs;                   ///< empty: nobody knows
     FarmNames names;
-    std::string id;       ///< Slurm's
+    std::string id;       ///< Slurm's; empty: of tasks that something else started
     FrameNumbers frames;  ///< all that are asked for
     FrameNumbers done;    ///< those whose pictures were there when it was submitted
 };
@@ -67,6 +67,8 @@ struct ChunkRecord {
 [[nodiscard]] darkroom::Result<> write_record(const std::filesystem::path& folder, const ChunkRecord& record);
 /// Of another job: the arguments are the same, as far as a file of JSON has them.
 [[nodiscard]] bool has_arguments(const FarmJob& job, const std::vector<std::string>& arguments);
+[[nodiscard]] darkroom::Result<> check_arguments(const std::filesystem::path& folder, const FarmJob& job,
+                                                 const std::vector<std::string>& now);
 /// The error names the folder, and the first file that is another one now.
 [[nodiscard]] darkroom::Result<> check_inputs(const std::filesystem::path& folder, const FarmJob& job,
                                               const FarmInputs& now);

@@ -109,15 +109,6 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
 
 bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos; }
 
-/// Pictures that are there are of what was submitted before, which must have been the same.
-Result<> check_same(const FarmWork& work, const FarmJob& last, const FarmJob& job) {
-    if (!has_arguments(last, job.arguments))
-        return user_error(
-            fmt::format("{}: its pictures were made with other arguments ({}); remove it, or write elsewhere with -o",
-                        printable(work.folder.string()), printable(fmt::format("{}", fmt::join(last.arguments, " ")))));
-    return job.done.empty() ? Result<>() : check_inputs(work.folder, last, job.inputs);
-}
-
 /// What was submitted before may not be under way.
 Result<> check_is_over(const FarmWork& work, const FarmJob& last) {
     const std::string& id = last.id;
@@ -171,7 +162,8 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
         if (is_there(frame.picture)) job.done.insert(frame.number);
     }
     DARKROOM_TRY_VALUE(const std::optional<FarmJob> last, read_job(work.folder));
-    if (last) DARKROOM_TRY(check_same(work, *last, job));
+    if (last) DARKROOM_TRY(check_arguments(work.folder, *last, job.arguments));
+    if (last && !job.done.empty()) DARKROOM_TRY(check_inputs(work.folder, *last, job.inputs));
     const std::vector<std::string> chunks = chunks_of(work, job.done, chunk);
     if (chunks.empty()) {
         answer_unless_quiet(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));

@@ -52,6 +52,13 @@ FrameNumbers numbers_there(const FarmWork& work) {
     return out;
 }
 
+Result<> make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directory(folder, error);
+    if (!error) return {};
+    return darkroom::machine_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
+}
+
 class Task {
   public:
     Task(const FarmFlags& flags, FarmWork work) : flags_(flags), work_(std::move(work)) {}
@@ -76,6 +83,7 @@ class Task {
     [[nodiscard]] bool is_done() const { return record_.done.size() == record_.frames.size(); }
 
     Result<> begin() {
+        DARKROOM_TRY(make_folder(work_.folder));
         DARKROOM_TRY_VALUE(const darkroom::FrameSet frames, parse_frames(flags_.frames()));
         const std::vector<long long> numbers = frames.numbers();
         record_.name = frames.is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
@@ -87,11 +95,6 @@ class Task {
         for (const FarmFrame& frame : work_.frames) record_.frames.insert(frame.number);
         record_.done = numbers_there(work_);
         there_before_ = record_.done.size();
-        std::error_code error;
-        fs::create_directory(work_.folder, error);
-        if (error)
-            return darkroom::machine_error(
-                fmt::format("{}: cannot be made: {}", printable(work_.folder.string()), error.message()));
         return write();
     }
 
@@ -125,19 +128,41 @@ class Task {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What a job of these arguments was submitted with must be what its tasks read.
-Result<> check_submitted(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
+Result<bool> has_pictures(const fs::path& folder) {
+    DARKROOM_TRY_VALUE(const std::vector<ChunkRecord> records, read_records(folder));
+    return std::ranges::any_of(records, [&](const ChunkRecord& record) {
+        return std::ranges::any_of(record.done, [&](long long number) {
+            return std::ranges::any_of(record.names.pictures(number), [&](const fs::path& picture) {
+                return is_there(folder.parent_path() / picture.filename());
+            });
+        });
+    });
+}
+
+/// What a job of these arguments was submitted with must be what its tasks read. Where nothing was submitted, the first
+/// task writes what the others are held against, as long as a picture of theirs is there.
+Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
     DARKROOM_TRY_VALUE(const std::optional<FarmJob> job, read_job(work.folder));
-    if (!job || !has_arguments(*job, flags.task())) return {};
-    const Result<FarmInputs> inputs = flags.check(work, named);
-    return inputs ? check_inputs(work.folder, *job, *inputs) : failure(inputs.error());
+    const bool is_submitted = job && !job->id.empty();
+    if (is_submitted && !has_arguments(*job, flags.task())) return {};
+    DARKROOM_TRY_VALUE(FarmInputs inputs, flags.check(work, named));
+    if (is_submitted) return check_inputs(work.folder, *job, inputs);
+    if (job) {
+        Result<> same = check_arguments(work.folder, *job, flags.task());
+        if (same) same = check_inputs(work.folder, *job, inputs);
+        if (same) return {};
+        DARKROOM_TRY_VALUE(const bool stays, has_pictures(work.folder));
+        if (stays) return same;
+    }
+    DARKROOM_TRY(make_folder(work.folder));
+    return write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names});
 }
 
 int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {
     if (flags.frames().empty()) return fail_user("farm task: --frames A-B is needed");
     Result<FarmWork> work = flags.work();
     if (!work) return fail(work.error());
-    if (const Result<> done = check_submitted(flags, *work, named); !done) return fail(done.error());
+    if (const Result<> done = check_job(flags, *work, named); !done) return fail(done.error());
     const Result<int> code = Task(flags, std::move(*work)).run();
     return code ? *code : fail(code.error());
 }
@@ -149,7 +174,7 @@ Command add_farm_task(CommandFlags farm, std::span<const darkroom::LookEntry> na
         farm.add_command("task", "Makes one chunk, tried again three times at most, and writes a record of it");
     command.examples(
         "darkroom farm task 'shot.####.exr' -o . --frames 1-1\n"
-        "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2 -- --exposure 2\n"
+        "darkroom farm task 'shot.####.exr' --look my.toml -o looked/ --mkdir --frames 1-2 -- --exposure 2\n"
         "darkroom farm task scene.toml -o 'scene.####.png' --frames 0-1 -- --size 64x36");
     const auto flags = std::make_shared<FarmFlags>();
     flags->add_to(command, "The chunk");

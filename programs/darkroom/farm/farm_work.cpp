@@ -14,6 +14,7 @@
 #include "programs/darkroom/effects/named_effects.hpp"
 #include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/run/outputs.hpp"
+#include "programs/darkroom/run/report.hpp"
 #include "scene/assets.hpp"
 
 namespace app {
@@ -118,6 +119,14 @@ Result<std::vector<FarmFrame>> FarmFlags::frames_in(const std::optional<darkroom
         return user_error(
             fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs.size()));
     std::ranges::sort(out, {}, &FarmFrame::number);
+    if (frames) {
+        FrameNumbers without_input;
+        for (const long long number : frames->numbers()) without_input.insert(number);
+        for (const FarmFrame& frame : out) without_input.erase(frame.number);
+        if (!without_input.empty())
+            warn(fmt::format("--frames {}: no input of {} has these numbers: {}", printable(frames_), printable(input_),
+                             shown(without_input)));
+    }
     return out;
 }
 

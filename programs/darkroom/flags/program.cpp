@@ -52,8 +52,10 @@ std::string unknown_argument(const CLI::App& command, const std::string& argumen
             return fmt::format("{}: unknown argument '{}', did you mean '{}'?", full_name(command), printable(argument),
                                effect);
     }
-    return fmt::format("{}: unknown argument '{}'{}", full_name(command), printable(argument),
-                       darkroom::suggestion(name, known));
+    std::string hint = darkroom::suggestion(name, known);
+    if (hint.empty() && command.get_option_no_throw("MORE") != nullptr)
+        hint = "; flags of develop and render stand behind --";
+    return fmt::format("{}: unknown argument '{}'{}", full_name(command), printable(argument), hint);
 }
 
 // Of the commands that were typed, and theirs, the one with an argument that nobody took.
