@@ -78,6 +78,8 @@ TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
     EXPECT_EQ(record("1-2")["tries"], 0) << "all was there";
     EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q -- --exposure 2").told, "");
     EXPECT_EQ(record("0-0")["made"], 1);
+    write(out("out", 1), "");
+    EXPECT_EQ(status()["missing"], json::parse("[[1,1]]")) << "one that was lost since is not done";
 }
 
 // Pictures of two looks in one folder are told by nobody afterwards.

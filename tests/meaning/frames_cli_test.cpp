@@ -194,6 +194,35 @@ TEST_F(CliFrameMeaning, ColorInteropIdSaysTheSpaceAndGoesBeforeChromaticities) {
     EXPECT_NE(info.out.find("says nothing that is known"), std::string::npos) << info.out;
 }
 
+// By OpenImageIO 3.2: colorconvert(unpremult=True).
+TEST_F(CliFrameMeaning, CurvesAreOfStraightColor) {
+    store(path("in.exr"), {{.channels = {{"R", all(0.25F)}, {"G", all(0.1F)}, {"B", all(0.4F)}, {"A", all(0.5F)}},
+                            .texts = {{"colorInteropID", "srgb_rec709_scene"}}}});
+    const Result<FrameFile> frame = read_frame(path("in.exr"));
+    ASSERT_TRUE(frame) << frame.error().text;
+    ASSERT_TRUE(frame->is_associated);
+    const float* const pixel = frame->color.at(1, 1);
+    EXPECT_NEAR(pixel[0], 0.10702, 1e-5);
+    EXPECT_NEAR(pixel[1], 0.01655, 1e-5);
+    EXPECT_NEAR(pixel[2], 0.30192, 1e-5);
+}
+
+// The frame's projection is not that of a part of it.
+TEST_F(CliFrameMeaning, APictureOfAnotherShapeSaysNoProjection) {
+    FrameFile made;
+    made.color = Picture(32, 16);
+    made.camera.projection = Matrix{1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0};
+    ASSERT_TRUE(write_frame(path("in.exr"), made));
+    for (const auto& [size, is_kept] : {std::pair("16x8", true), {"16x16:fill", false}, {"16x16:stretch", false}}) {
+        ASSERT_EQ(develop("in.exr", "out.exr", {"--size", size}).code, 0);
+        const Result<FrameFile> out = read_frame(path("out.exr"));
+        ASSERT_TRUE(out) << out.error().text;
+        EXPECT_EQ(out->camera.projection.has_value(), is_kept) << size;
+    }
+    EXPECT_NE(develop("in.exr", "out.exr", {"--overscan", "--size", "16x8"}).err.find("works without --size"),
+              std::string::npos);
+}
+
 TEST_F(CliFrameMeaning, TristimulusValuesThatSayTheirPrimariesAreAPicture) {
     // White of D65, by CIE 15.
     store(path("in.exr"), {{.channels = {{"X", all(0.95047F)}, {"Y", all(1)}, {"Z", all(1.08883F)}},

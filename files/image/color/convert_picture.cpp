@@ -12,13 +12,22 @@ namespace {
 
 constexpr double largest = std::numeric_limits<float>::max();
 
-// Every code of an 8- or 16-bit file decoded once; a picture has more pixels than there are codes.
+float decoded_value(const TransferCurve& curve, float value) {
+    return static_cast<float>(std::clamp(curve.decode(double{value}), -largest, largest));
+}
+
+// Every code of an 8- or 16-bit file decoded once; a picture has more pixels than there are codes. What was divided by
+// alpha lies between codes, and above the last one where light is added that covers nothing.
 void decode_codes(Picture& color, float last_code, const TransferCurve& curve) {
     std::vector<float> decoded(static_cast<std::size_t>(last_code) + 1);
     for (std::size_t code = 0; code < decoded.size(); ++code)
         decoded[code] = static_cast<float>(curve.decode(static_cast<double>(code) / double{last_code}));
-    for (std::size_t i = 0; i < color.pixels.size(); ++i)
-        if (i % 4 != 3) color.pixels[i] = decoded[static_cast<std::size_t>(std::lround(color.pixels[i] * last_code))];
+    for (std::size_t i = 0; i < color.pixels.size(); ++i) {
+        if (i % 4 == 3) continue;
+        const float code = color.pixels[i] * last_code, nearest = std::round(code);
+        const bool is_code = nearest >= 0 && nearest <= last_code && std::abs(code - nearest) < 1e-2f;
+        color.pixels[i] = is_code ? decoded[static_cast<std::size_t>(nearest)] : decoded_value(curve, color.pixels[i]);
+    }
 }
 
 }  // namespace
@@ -28,8 +37,7 @@ void decode(Picture& color, SampleKind samples, const TransferCurve& curve) {
     if (samples == SampleKind::Integer16) return decode_codes(color, 65535, curve);
     if (curve.is_linear()) return;
     for (std::size_t i = 0; i < color.pixels.size(); ++i)
-        if (i % 4 != 3)
-            color.pixels[i] = static_cast<float>(std::clamp(curve.decode(double{color.pixels[i]}), -largest, largest));
+        if (i % 4 != 3) color.pixels[i] = decoded_value(curve, color.pixels[i]);
 }
 
 void convert(Picture& color, const ColorMatrix& matrix) {

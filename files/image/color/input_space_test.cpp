@@ -5,6 +5,7 @@
 #include <string>
 
 #include "image/codec/tiff_check.hpp"
+#include "image/color/convert_picture.hpp"
 #include "image/color/file_color.hpp"
 #include "image/color/icc_profile.hpp"
 #include "image/color/interop_space.hpp"
@@ -80,6 +81,19 @@ TEST(ImageColor, CurvesHaveTheirPublishedPlaces) {
         const TransferCurve curve{kind};
         EXPECT_EQ(curve.decode(0), 0);
         EXPECT_EQ(curve.decode(-0.3), -curve.decode(0.3));
+    }
+}
+
+// IEC 61966-2-1 between codes and beyond the last one, as a division by alpha leaves them.
+TEST(ImageColor, CodesThatAlphaDividedAreDecodedWhereTheyLie) {
+    for (const SampleKind samples : {SampleKind::Integer8, SampleKind::Integer16}) {
+        Picture picture(1, 1);
+        picture.pixels = {2, 0.5005F, 50000, 0.01F};
+        decode(picture, samples, {TransferCurve::Kind::Srgb});
+        const auto light = [](double value) { return std::pow((value + 0.055) / 1.055, 2.4); };
+        EXPECT_NEAR(picture.pixels[0], light(2), 1e-5);
+        EXPECT_NEAR(picture.pixels[1], light(0.5005), 1e-5);
+        EXPECT_NEAR(picture.pixels[2] / light(50000), 1, 1e-5);
     }
 }
 

@@ -71,6 +71,13 @@ bool is_of_any_picture(std::string_view name) {
            std::ranges::any_of(starts, [&](std::string_view start) { return lowered.starts_with(start); });
 }
 
+/// Which part of the scene a picture shows, and the shape of its pixels.
+bool is_framing(std::string_view name) {
+    const std::string lowered = lower(name);
+    return lowered == "pixelaspectratio" || lowered == "worldtondc" || lowered.starts_with("screenwindow") ||
+           (lowered.starts_with("darkroom:") && lowered.find("projection") != std::string::npos);
+}
+
 /// Adds it unless `header` says it: every header says some, at values that say nothing.
 void add(const char* name, const Imf::Attribute& value, Imf::Header& header) {
     const std::string_view of = name;
@@ -93,9 +100,10 @@ ExrAttributes::ExrAttributes(const Imf::Header& header, Of of) : kept_(std::make
 
 ExrAttributes::~ExrAttributes() = default;
 
-void ExrAttributes::add_to(Imf::Header& header) const {
+void ExrAttributes::add_to(Imf::Header& header, bool is_reframed) const {
     for (auto found = kept_->begin(); found != kept_->end(); ++found)
-        if (!is_layout(found.name())) add(found.name(), found.attribute(), header);
+        if (!is_layout(found.name()) && !(is_reframed && is_framing(found.name())))
+            add(found.name(), found.attribute(), header);
 }
 
 void ExrAttributes::add_cryptomatte_to(Imf::Header& header) const {

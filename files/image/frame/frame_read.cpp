@@ -44,6 +44,7 @@ class FrameReader {
     Result<> make_velocity();
     Result<> make_masks();
     void finish_color();
+    void scale_by_alpha(float (*scale)(float value, float alpha));
     void finish_depth();
     void make_depth_planar();
     void finish_normals();
@@ -205,12 +206,23 @@ void FrameReader::finish_color() {
         return;
     }
     make_finite(frame_.color, frame_.counts);
+    // Curves are of straight colour. Floats stay associated, and what shines without covering has no alpha to divide
+    // by.
+    const bool has_curve = options_.input_chain != nullptr || !curve_.is_linear();
     if (frame_.has_alpha && part(found_.color).is_associated && is_integer()) make_straight(frame_.color.pixels);
+    if (frame_.is_associated && has_curve) scale_by_alpha([](float value, float alpha) { return value / alpha; });
     if (options_.input_chain)
         apply(*options_.input_chain, frame_.color);
     else
         decode(frame_.color, frame_.samples, curve_);
+    if (frame_.is_associated && has_curve) scale_by_alpha([](float value, float alpha) { return value * alpha; });
     if (to_rec709_) convert(frame_.color, *to_rec709_);
+}
+
+void FrameReader::scale_by_alpha(float (*scale)(float value, float alpha)) {
+    std::vector<float>& rgba = frame_.color.pixels;
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+        if (i % 4 != 3 && rgba[i | 3] > 0) rgba[i] = scale(rgba[i], rgba[i | 3]);
 }
 
 Result<> FrameReader::make_depth() {

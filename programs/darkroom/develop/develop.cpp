@@ -231,6 +231,8 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     DARKROOM_TRY(options.run.start_report());
     if (options.keeps_layers && options.frame.keeps_overscan)
         return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
+    if (options.frame.keeps_overscan && (!options.size.empty() || !options.output_size.empty()))
+        return user_error("--overscan: works without --size and --output-size, which know no display window");
     if (!options.output_size.empty() && options.keeps_layers)
         return user_error("--output-size: works without --keep-layers, which keeps layers at the frame's size");
     if (options.is_reference && options.run.has_timings)
@@ -423,6 +425,13 @@ class Develop {
         return {};
     }
 
+    [[nodiscard]] bool is_reframed(const Item& item) const {
+        const VkExtent2D frame = item.input.extent, made = item.extent;
+        return (job_.size && job_.size->sizing != darkroom::Sizing::Fit) ||
+               std::abs(double{made.width} * frame.height - double{made.height} * frame.width) >
+                   std::max(frame.width, frame.height);
+    }
+
     Result<> encode(std::size_t i) {
         if (!job_.steps[i].is_written) return {};
         if (stream_) {
@@ -431,6 +440,7 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
+        options.is_reframed = is_reframed(items_[i]);
         if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
         if (options_.keeps_layers) DARKROOM_TRY(keep_layers(i, options));
         return write(job_.steps[i].output, std::move(items_[i].picture), options);

@@ -198,7 +198,7 @@ Command add_farm_slurm(CommandFlags farm, std::span<const darkroom::LookEntry> n
     const CommandFlags command = farm.add_command("slurm", "Submits what is missing of a sequence as an array job");
     command.examples(
         "darkroom farm slurm 'shot.####.exr' --look my.toml -o . --chunk 1 --dry-run\n"
-        "darkroom farm slurm 'shot.####.exr' -o . --partition gpu --gpus 1 --time 30 --dry-run -- --exposure 2\n"
+        "darkroom farm slurm 'shot.####.exr' -o bright/ --mkdir --partition gpu --time 30 --dry-run -- --exposure 2\n"
         "darkroom farm slurm scene.toml -o 'scene.####.png' --frames 0-99 --dry-run -- --size 64x36");
     const auto options = std::make_shared<SlurmOptions>();
     options->work.add_to(command, "Numbers of the frames: of a sequence those to make, of a scene all");

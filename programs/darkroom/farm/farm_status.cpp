@@ -46,16 +46,14 @@ std::set<std::string> files_beside(const fs::path& folder) {
     return out;
 }
 
-/// Those frames whose pictures are there. Who wrote one down has seen that it is whole; of the others the size tells,
-/// and only they are looked at one by one, since a file server answers for each.
+/// Those frames whose pictures are there and not empty, whoever wrote them down: a file server may have lost one since.
 FrameNumbers numbers_there(const fs::path& folder, const std::set<std::string>& files, const FarmNames& names,
-                           const FrameNumbers& frames, const FrameNumbers& written_down) {
+                           const FrameNumbers& frames) {
     FrameNumbers out;
     for (const long long number : frames) {
         const bool is_made = std::ranges::any_of(names.pictures(number), [&](const fs::path& picture) {
             const fs::path name = picture.filename();
-            return files.contains(name.string()) &&
-                   (written_down.contains(number) || is_there(folder.parent_path() / name));
+            return files.contains(name.string()) && is_there(folder.parent_path() / name);
         });
         if (is_made) out.insert(out.end(), number);
     }
@@ -70,7 +68,7 @@ Result<Status> status_of(const fs::path& folder) {
     if (job) {
         out.job = job->id;
         out.frames = job->frames;
-        out.done = numbers_there(folder, files, job->names, out.frames, job->done);
+        out.done = numbers_there(folder, files, job->names, out.frames);
     }
     // What tasks of an earlier job said of themselves is not what this one is about.
     if (!out.job.empty())
@@ -80,7 +78,7 @@ Result<Status> status_of(const fs::path& folder) {
     FrameNumbers failed;
     for (const ChunkRecord& record : out.chunks) {
         out.frames.insert(record.frames.begin(), record.frames.end());
-        out.done.merge(numbers_there(folder, files, record.names, record.frames, record.done));
+        out.done.merge(numbers_there(folder, files, record.names, record.frames));
         if (record.state == ChunkState::failed) failed.insert(record.frames.begin(), record.frames.end());
     }
     out.failed = without(failed, out.done);

@@ -173,8 +173,8 @@ Command add_farm_task(CommandFlags farm, std::span<const darkroom::LookEntry> na
     const CommandFlags command =
         farm.add_command("task", "Makes one chunk, tried again three times at most, and writes a record of it");
     command.examples(
-        "darkroom farm task 'shot.####.exr' -o . --frames 1-1\n"
-        "darkroom farm task 'shot.####.exr' --look my.toml -o looked/ --mkdir --frames 1-2 -- --exposure 2\n"
+        "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-1\n"
+        "darkroom farm task 'shot.####.exr' -o bright/ --mkdir --frames 1-2 -- --exposure 2\n"
         "darkroom farm task scene.toml -o 'scene.####.png' --frames 0-1 -- --size 64x36");
     const auto flags = std::make_shared<FarmFlags>();
     flags->add_to(command, "The chunk");
