@@ -427,9 +427,10 @@ class Develop {
 
     [[nodiscard]] bool is_reframed(const Item& item) const {
         const VkExtent2D frame = item.input.extent, made = item.extent;
+        const std::int64_t difference =
+            std::int64_t{made.width} * frame.height - std::int64_t{made.height} * frame.width;
         return (job_.size && job_.size->sizing != darkroom::Sizing::Fit) ||
-               std::abs(double{made.width} * frame.height - double{made.height} * frame.width) >
-                   std::max(frame.width, frame.height);
+               std::abs(difference) > std::max(frame.width, frame.height);
     }
 
     Result<> encode(std::size_t i) {
