@@ -65,6 +65,34 @@ TEST(Formats, NumbersAreSeenByShadersAsTheyAreStored) {
     EXPECT_EQ(format_traits(VK_FORMAT_R16G16_SINT).bits, 32U);
 }
 
+// All of vulkan_core.h whose names end so; the signed one follows each.
+TEST(Formats, NoIntegersPassForColour) {
+    for (const VkFormat format : {VK_FORMAT_R8_UINT,
+                                  VK_FORMAT_R8G8_UINT,
+                                  VK_FORMAT_R8G8B8_UINT,
+                                  VK_FORMAT_B8G8R8_UINT,
+                                  VK_FORMAT_R8G8B8A8_UINT,
+                                  VK_FORMAT_B8G8R8A8_UINT,
+                                  VK_FORMAT_A8B8G8R8_UINT_PACK32,
+                                  VK_FORMAT_A2R10G10B10_UINT_PACK32,
+                                  VK_FORMAT_A2B10G10R10_UINT_PACK32,
+                                  VK_FORMAT_R16_UINT,
+                                  VK_FORMAT_R16G16_UINT,
+                                  VK_FORMAT_R16G16B16_UINT,
+                                  VK_FORMAT_R16G16B16A16_UINT,
+                                  VK_FORMAT_R32_UINT,
+                                  VK_FORMAT_R32G32_UINT,
+                                  VK_FORMAT_R32G32B32_UINT,
+                                  VK_FORMAT_R32G32B32A32_UINT,
+                                  VK_FORMAT_R64_UINT,
+                                  VK_FORMAT_R64G64_UINT,
+                                  VK_FORMAT_R64G64B64_UINT,
+                                  VK_FORMAT_R64G64B64A64_UINT}) {
+        EXPECT_EQ(format_traits(format).numeric, Numeric::Unsigned) << format;
+        EXPECT_EQ(format_traits(static_cast<VkFormat>(format + 1)).numeric, Numeric::Signed) << format + 1;
+    }
+}
+
 TEST(Formats, WhatIsNotInTheListIsColourWithoutStorage) {
     const FormatTraits traits = format_traits(VK_FORMAT_BC1_RGB_UNORM_BLOCK);
     EXPECT_EQ(traits.format, VK_FORMAT_BC1_RGB_UNORM_BLOCK);
