@@ -133,6 +133,12 @@ class Host {
     }
 };
 
+bool has_extended_formats(const Host& host) {
+    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    host.vk.GetPhysicalDeviceFeatures2(host.physical_device, &features);
+    return features.features.shaderStorageImageExtendedFormats == VK_TRUE;
+}
+
 TEST(GpuAdopt, KernelsRunOnVulkan12WithBothExtensions) {
     const Host host;
     const Result<Device> device = Device::adopt(host.desc());
@@ -194,6 +200,24 @@ TEST(GpuAdopt, AFeatureThatIsThereAndNotEnabledIsToldAsThat) {
     const Result<Device> none = Device::adopt(desc);
     ASSERT_FALSE(none);
     EXPECT_TRUE(has(none.error().text, "not enabled: enabled_features is null")) << none.error().text;
+}
+
+// The same of a feature that one kernel asks for.
+TEST(GpuAdopt, AKernelTellsAFeatureThatIsMissingFromOneThatIsNotEnabled) {
+    const Host host;
+    const Device device = gpu::test::must(Device::adopt(host.desc()));
+    gpu::KernelSpec spec = red;
+    spec.outputs = {VK_FORMAT_R16_SFLOAT};
+    const auto refusal = [&] {
+        const auto usable = gpu::usable(device.context(), spec, gpu::Stage::Compute);
+        return usable ? std::string("none") : usable.error().text;
+    };
+    if (!has_extended_formats(host)) GTEST_SKIP() << "this device has no shaderStorageImageExtendedFormats";
+    EXPECT_TRUE(refusal().ends_with(": shaderStorageImageExtendedFormats is not enabled")) << refusal();
+    device.context().vk.GetPhysicalDeviceFeatures2 = [](VkPhysicalDevice, VkPhysicalDeviceFeatures2* features) {
+        features->features = {};
+    };
+    EXPECT_TRUE(refusal().ends_with(": the device has no shaderStorageImageExtendedFormats")) << refusal();
 }
 
 TEST(GpuAdopt, AnInstanceThatIsTooOldIsTheReasonGiven) {

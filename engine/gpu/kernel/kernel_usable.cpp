@@ -20,6 +20,19 @@ Failure refusal(const KernelSpec& spec, Stage stage, std::string_view thing, VkF
                                   format_name(format), static_cast<int>(format), reason));
 }
 
+/// Of a feature that is not enabled. What is there the host can enable.
+std::string without(const Context& context, VkBool32 VkPhysicalDeviceFeatures::*feature, std::string_view name) {
+    VkPhysicalDeviceFeatures2 there{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    if (!context.is_assumed) context.vk.GetPhysicalDeviceFeatures2(context.physical_device, &there);
+    return there.features.*feature == VK_TRUE ? fmt::format("{} is not enabled", name)
+                                              : fmt::format("the device has no {}", name);
+}
+
+std::string without_extended_formats(const Context& context) {
+    return without(context, &VkPhysicalDeviceFeatures::shaderStorageImageExtendedFormats,
+                   "shaderStorageImageExtendedFormats");
+}
+
 Result<> can_load(const Context& context, const KernelSpec& spec, Stage stage, const KernelImage& image) {
     const FormatTraits traits = format_traits(image.storage_format);
     const std::string thing = fmt::format("storage image \"{}\"", image.name);
@@ -27,7 +40,7 @@ Result<> can_load(const Context& context, const KernelSpec& spec, Stage stage, c
         return refusal(spec, stage, thing, image.storage_format, "GLSL has no storage format of this name");
     }
     if (traits.needs_extended && !context.traits.has_extended_storage_formats) {
-        return refusal(spec, stage, thing, image.storage_format, "shaderStorageImageExtendedFormats is not enabled");
+        return refusal(spec, stage, thing, image.storage_format, without_extended_formats(context));
     }
     if (!context.supports(image.storage_format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) {
         return refusal(spec, stage, thing, image.storage_format, "the device cannot use it as a storage image");
@@ -44,14 +57,16 @@ Result<> can_store(const Context& context, const KernelSpec& spec, std::size_t i
         return refusal(spec, Stage::Compute, thing, format, "GLSL cannot read back a storage image without a format");
     }
     if (traits.glsl_qualifier.empty() && !context.traits.has_storage_write_without_format) {
-        return refusal(spec, Stage::Compute, thing, format, "shaderStorageImageWriteWithoutFormat is not enabled");
+        return refusal(spec, Stage::Compute, thing, format,
+                       without(context, &VkPhysicalDeviceFeatures::shaderStorageImageWriteWithoutFormat,
+                               "shaderStorageImageWriteWithoutFormat"));
     }
     if (traits.glsl_qualifier.empty() && !context.writes_without_format(format)) {
         return refusal(spec, Stage::Compute, thing, format,
                        "the device writes it by no storage image without a format");
     }
     if (traits.needs_extended && !context.traits.has_extended_storage_formats) {
-        return refusal(spec, Stage::Compute, thing, format, "shaderStorageImageExtendedFormats is not enabled");
+        return refusal(spec, Stage::Compute, thing, format, without_extended_formats(context));
     }
     if (!context.supports(format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) {
         return refusal(spec, Stage::Compute, thing, format, "the device cannot use it as a storage image");
