@@ -189,42 +189,35 @@ TEST_F(ComposeHistoryStack, WhatNobodyReadForAWhileDoesNotComeBack) {
     }
 }
 
-TEST_F(ComposeHistoryStack, AnotherStageOfTheKernelsKeepsIt) {
-    const Host host(test::uniform(4, 4, {1, 1, 1, 1}));
-    Composer composer(host.device);
+/// The first picture stays, whatever is shown, while the kernels' stage changes.
+void expect_it_outlives_its_stage(Device& device) {
+    const Host host(test::uniform(4, 4, {1, 1, 1, 1}), VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+                    device);
+    Composer composer(device);
     composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
     test::add(composer, "gaussian_blur", {{"radius", 1.0}});
     CompileDesc desc = host.compile_desc();
     for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster, KernelStage::Compute}) {
         desc.kernels = stage;
         must(composer.compile(desc));
-        // The first picture stays, whatever is shown.
         EXPECT_EQ(shown(host, composer, 1 - static_cast<double>(stage == KernelStage::Raster)), 1);
         EXPECT_EQ(shown(host, composer, 0.5), 1);
     }
 }
 
+TEST_F(ComposeHistoryStack, AnotherStageOfTheKernelsKeepsIt) { expect_it_outlives_its_stage(gpu::test::device()); }
+
 // A format that cannot be blitted is copied, where the extent stays.
 TEST_F(ComposeHistoryStack, AnotherStageKeepsItThoughItCannotBeBlitted) {
     static PFN_vkGetPhysicalDeviceFormatProperties ask;
-    Device own = test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    Device own = must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
     gpu::Dispatch& vk = own.context().vk;
     ask = vk.GetPhysicalDeviceFormatProperties;
     vk.GetPhysicalDeviceFormatProperties = [](VkPhysicalDevice device, VkFormat format, VkFormatProperties* out) {
         ask(device, format, out);
         out->optimalTilingFeatures &= ~VkFormatFeatureFlags{VK_FORMAT_FEATURE_BLIT_DST_BIT};
     };
-    const Host host(test::uniform(4, 4, {1, 1, 1, 1}), VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
-                    own);
-    Composer composer(own);
-    composer.add(loop<VK_FORMAT_R32G32B32A32_SFLOAT>, nullptr);
-    CompileDesc desc = host.compile_desc();
-    for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster, KernelStage::Compute}) {
-        desc.kernels = stage;
-        must(composer.compile(desc));
-        EXPECT_EQ(shown(host, composer, 1 - static_cast<double>(stage == KernelStage::Raster)), 1);
-        EXPECT_EQ(shown(host, composer, 0.5), 1);
-    }
+    expect_it_outlives_its_stage(own);
 }
 
 // The effect behind it fails to compile, after the images of another stage were made.

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "compose/test_stacks/random_stack.hpp"
+#include "compose/test_stacks/record_in_vain.hpp"
 #include "core/test_support_small.hpp"
 
 namespace darkroom {
@@ -574,32 +575,13 @@ TEST_F(ComposeEdit, AnAbandonedRecordingDidNotHappen) {
     composer.add(trail(), nullptr);
     EXPECT_FALSE(composer.abandon());
     must(composer.compile(host.compile_desc()));
-    const auto record_unsubmitted = [&] {
-        Result<> recorded{};
-        gpu::Context& context = host.device.context();
-        const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                                .queueFamilyIndex = context.queue_family};
-        VkCommandPool pool = VK_NULL_HANDLE;
-        must(context.check(context.vk.CreateCommandPool(context.device, &pool_info, nullptr, &pool), "a pool"));
-        const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                               .commandPool = pool,
-                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                               .commandBufferCount = 1};
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        must(context.check(context.vk.AllocateCommandBuffers(context.device, &info, &commands), "commands"));
-        const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-        must(context.check(context.vk.BeginCommandBuffer(commands, &begin), "begin"));
-        Frame elsewhere = host.frame();
-        elsewhere.camera.view[12] = 1000;  // the camera was not there, either
-        must(composer.record(commands, elsewhere));
-        must(context.check(context.vk.EndCommandBuffer(commands), "end"));
-        context.vk.DestroyCommandPool(context.device, pool, nullptr);
-    };
-    record_unsubmitted();  // the uploads among it
+    Frame elsewhere = host.frame();
+    elsewhere.camera.view[12] = 1000;                 // the camera was not there, either
+    test::record_in_vain(composer, host, elsewhere);  // the uploads among it
     must(composer.abandon());
     EXPECT_FALSE(composer.abandon()) << "only the last one";
     for (int i = 0; i < 2; ++i) must(host.record(composer, host.frame()));
-    record_unsubmitted();
+    test::record_in_vain(composer, host, elsewhere);
     must(composer.abandon());
     const ReferenceImage out = host.run(composer);
 

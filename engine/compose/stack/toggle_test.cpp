@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/record_in_vain.hpp"
 
 namespace darkroom {
 namespace {
@@ -114,10 +114,6 @@ TEST_F(ComposeToggles, TimesAreOfARecordingThatHasRun) {
     gpu::Context& context = gpu::test::context();
     if (context.traits.timestamp_valid_bits == 0) GTEST_SKIP() << "this device measures no times";
     const test::Host host(bright_picture());
-    const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                            .queueFamilyIndex = context.queue_family};
-    VkCommandPool pool = VK_NULL_HANDLE;
-    test::must(context.check(context.vk.CreateCommandPool(context.device, &pool_info, nullptr, &pool), "a pool"));
     for (const bool can_reset : {true, false}) {
         const bool could = std::exchange(context.traits.has_host_query_reset, can_reset);
         Composer composer(host.device, {.frames_in_flight = 2, .has_timers = true});
@@ -129,17 +125,8 @@ TEST_F(ComposeToggles, TimesAreOfARecordingThatHasRun) {
             test::must(host.record(composer, frame));
         const std::size_t passes = composer.times().passes.size();
         test::must(composer.set_enabled(blur, false));
-        const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                               .commandPool = pool,
-                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                               .commandBufferCount = 1};
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        test::must(context.check(context.vk.AllocateCommandBuffers(context.device, &info, &commands), "commands"));
-        const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-        test::must(context.check(context.vk.BeginCommandBuffer(commands, &begin), "begin"));
         frame.frame_index = 99;
-        test::must(composer.record(commands, frame));
-        test::must(context.check(context.vk.EndCommandBuffer(commands), "end"));
+        test::record_in_vain(composer, host, frame);
         EXPECT_NE(composer.times().frame_index, 99u) << can_reset;
         EXPECT_EQ(composer.times().passes.size(), passes) << can_reset;
         test::must(composer.abandon());
@@ -148,7 +135,6 @@ TEST_F(ComposeToggles, TimesAreOfARecordingThatHasRun) {
             test::must(host.record(composer, frame));
         EXPECT_EQ(composer.times().frame_index, can_reset ? 103u : 101u);
     }
-    context.vk.DestroyCommandPool(context.device, pool, nullptr);
 }
 
 TEST_F(ComposeToggles, OpacityMixesInputAndResult) {
