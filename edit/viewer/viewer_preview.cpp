@@ -55,11 +55,9 @@ Result<> Viewer::begin_timing(const darkroom::window::PresentFrame& frame) {
     // A device without timestamps: from one frame to the next.
     double milliseconds = passed_ * 1000;
     const double timed = std::exchange(timed_[frame.slot], 0);
-    const bool is_known = timers_.pool == VK_NULL_HANDLE
-                              ? has_developed_ && !has_rested_
-                              : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
-    if (is_known && (timers_.pool == VK_NULL_HANDLE ? scale_ : timed) == lines_->scale())
-        lines_->add(milliseconds / 1000);
+    const bool is_known = timers_.pools.empty() ? has_developed_ && !has_rested_
+                                                : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
+    if (is_known && (timers_.pools.empty() ? scale_ : timed) == lines_->scale()) lines_->add(milliseconds / 1000);
     timers_.begin(frame.commands, frame.slot);
     timers_.mark(frame.commands, frame.slot, 0);
     return {};
