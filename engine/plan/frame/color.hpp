@@ -19,7 +19,6 @@ struct Work {
     float limit = 65504;     ///< of the picture's linear numbers
     float ootf = 1;          ///< of HLG: the exponent of its OOTF
 };
-inline constexpr std::uint32_t work_words = 4;
 inline constexpr std::uint32_t work_bits = 6;  ///< of Work::word
 
 /// May the picture be anything but what the effect works with? `may_be_encoded`, `is_always_encoded`: what the
