@@ -20,7 +20,7 @@ struct NamedStack {
 plan::Entry entry_of(const EffectInfo& info) {
     plan::Entry entry{.info = &info};
     entry.desc.name = info.name;
-    if (info.has_second) entry.desc.second = scene_color;
+    if (info.has_second()) entry.desc.second = scene_color;
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     return entry;
 }

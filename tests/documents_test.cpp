@@ -61,7 +61,7 @@ std::vector<std::string> flat_names(LookOrder order, bool only_those_on = false)
     };
     std::vector<const EffectInfo*> effects;
     for (const EffectInfo* const effect : all_effects())
-        if (rank(effect) >= 0 && !effect->flat.is_of_ui &&
+        if (rank(effect) >= 0 && !effect->flat.is_of_ui() &&
             (!only_those_on || flat_entry(*effect, order).state.enabled.on != 0))
             effects.push_back(effect);
     std::ranges::sort(effects, {}, rank);

@@ -62,10 +62,10 @@ LookEntry* sleeping(Look& look, const EffectInfo& effect) {
 
 Addition addition_of(const Look& look, const EffectInfo& effect) {
     Look copy = look;
-    if (effect.flat.is_of_ui && !copy.ui) add_ui(copy);
+    if (effect.flat.is_of_ui() && !copy.ui) add_ui(copy);
     const LookEntry* const own = own_place(copy, effect);
     if (own == nullptr) return {.kind = look.is_flat ? Addition::Kind::MakesStack : Addition::Kind::Inserts};
-    const bool is_there = own->state.enabled.on != 0 && (!effect.flat.is_of_ui || look.ui);
+    const bool is_there = own->state.enabled.on != 0 && (!effect.flat.is_of_ui() || look.ui);
     return {.kind = is_there ? Addition::Kind::IsThere : Addition::Kind::SwitchesOn,
             .entry = entry_names(copy)[static_cast<std::size_t>(own - copy.entries.data())]};
 }
@@ -106,7 +106,7 @@ Result<std::string> add_effect(Look& look, const EffectInfo& effect, std::string
 }
 
 Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view before) {
-    if (entry.effect->flat.is_of_ui) {
+    if (entry.effect->flat.is_of_ui()) {
         const bool is_new = !look.ui;
         if (is_new) add_ui(look);
         before = {};
@@ -118,7 +118,7 @@ Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view befo
         there->state.enabled = true;
         return entry_names(look)[static_cast<std::size_t>(there - look.entries.data())];
     }
-    if (entry.effect->flat.is_of_ui)
+    if (entry.effect->flat.is_of_ui())
         return user_error(fmt::format("{}: belongs to the interface, which has one already", entry.effect->name));
     entry.id = made_id;
     if (before.empty()) {

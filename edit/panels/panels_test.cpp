@@ -24,7 +24,7 @@ class PanelDocument : public ::testing::Test {
         for (const EffectInfo* const effect : all_effects())
             for (const ParamInfo& row : effect->parameters.rows)
                 if (effect->flat.documented >= 0 && row.kind == kind && effect->conflict == nullptr &&
-                    !effect->flat.is_of_ui)
+                    !effect->flat.is_of_ui())
                     return {effect, &row};
         return {};
     }

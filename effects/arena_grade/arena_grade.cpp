@@ -78,7 +78,7 @@ const EffectInfo& effect_info(const ArenaGrade&) {
                     .domain = Domain::DisplayLinear, .white_nits = before.white_nits, .peak_nits = before.white_nits};
             },
         .flat = {.documented = 71, .scene_linear = 72},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .build = build,
         .reference = arena_grade_reference,
     };

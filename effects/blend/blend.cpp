@@ -23,8 +23,7 @@ const EffectInfo& effect_info(const Blend&) {
         .files = embedded_files("blend"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .has_second = true,
-        .has_second_in_place = true,
+        .second = Second::InPlace,
         .reference = blend_image_reference,
         .is_identity = [](const void* parameters) { return static_cast<const Blend*>(parameters)->amount == 0.0f; },
     };

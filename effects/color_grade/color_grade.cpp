@@ -165,7 +165,7 @@ const EffectInfo& effect_info(const ColorGrade&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .flat = {.documented = 65, .scene_linear = 67, .starts_on = true},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .build = [](PassBuilder& builder) { builder.end_constants(vectors, constants); },
         .reference = pointwise_reference<ColorGrade, color_grade_reference>,
         .is_identity = is_identity,

@@ -25,9 +25,8 @@ const EffectInfo& effect_info(const ContrastGamma&) {
         .files = embedded_files("contrast_gamma"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
-        .flat = {.documented = 125, .scene_linear = 125, .is_of_ui = true},
-        .works_encoded = true,
-        .maps_colors = true,
+        .flat = {.documented = 125, .scene_linear = 125, .ui = UiPart::Picture},
+        .works = {.in = WorkingSpace::Encoded},
         .reference = pointwise_reference<ContrastGamma, contrast_gamma_reference>,
         .is_identity =
             [](const void* parameters) {

@@ -61,7 +61,7 @@ const EffectInfo& effect_info(const Encode&) {
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::SceneLinear),
         .makes = makes,
         .flat = {.documented = 90, .scene_linear = 90, .starts_on = true},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .is_last_step = true,
         .reference = pointwise_reference<Encode, encode_reference>,
         .is_identity = is_none,

@@ -71,8 +71,7 @@ const EffectInfo& effect_info(const FilmGrain&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
         .flat = {.documented = 98, .scene_linear = 98},
-        .works_encoded = true,
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Encoded},
         .build = build,
         .reference = film_grain_reference,
         .is_identity =

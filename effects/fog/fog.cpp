@@ -65,8 +65,7 @@ const EffectInfo& effect_info(const Fog&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .needs = {FrameImage::Depth},
-        .flat = {.documented = 80, .scene_linear = 30, .starts_on = false},
-        .toggle_key = 8,
+        .flat = {.documented = 80, .scene_linear = 30, .starts_on = false, .toggle_key = 8},
         .is_in_traced_light = true,
         .build =
             [](PassBuilder& builder) {

@@ -28,7 +28,7 @@ const EffectInfo& effect_info(const Fxaa&) {
         .touch = Touch::Warp,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
         .flat = {.documented = 95, .scene_linear = 95, .starts_on = true},
-        .mixes_light = true,
+        .works = {.in = WorkingSpace::Light},
         .reference = fxaa_reference,
     };
     return info;

@@ -24,7 +24,7 @@ const EffectInfo& effect_info(const HighPass&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .flat = {.documented = 72, .scene_linear = 80},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .reference = pointwise_reference<HighPass, high_pass_reference>,
     };
     return info;

@@ -25,7 +25,7 @@ const EffectInfo& effect_info(const HsvAdjust&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .flat = {.documented = 73, .scene_linear = 81},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .reference = pointwise_reference<HsvAdjust, hsv_adjust_reference>,
         .is_identity =
             [](const void* parameters) {

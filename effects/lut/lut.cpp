@@ -148,7 +148,7 @@ const EffectInfo& effect_info(const Lut&) {
             },
         .makes = makes,
         .flat = {.documented = 87, .scene_linear = 78, .starts_on = false},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .build = build,
         .reference = lut_reference,
         .is_identity =

@@ -23,7 +23,7 @@ const EffectInfo& effect_info(const Negative&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .flat = {.documented = 74, .scene_linear = 82},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .reference = pointwise_reference<Negative, negative_reference>,
         .is_identity = [](const void* parameters) { return static_cast<const Negative*>(parameters)->amount == 0.0f; },
     };

@@ -24,7 +24,7 @@ const EffectInfo& effect_info(const Posterize&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .flat = {.documented = 76, .scene_linear = 84},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .reference = pointwise_reference<Posterize, posterize_reference>,
     };
     return info;

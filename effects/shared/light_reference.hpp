@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What an effect that mixes pixels (EffectInfo::mixes_light) does it by, in double precision: light in place of code
+// What an effect that mixes pixels (WorkingSpace::Light) does it by, in double precision: light in place of code
 // values, multiplied by alpha where the picture is.
 
 #include <darkroom/reference.hpp>

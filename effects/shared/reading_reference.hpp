@@ -52,16 +52,22 @@ inline ReferenceImage read_reference(const ReferenceImage& picture, std::span<co
     return out;
 }
 
-/// Lift a map, or a tap, by itself to a ReferenceFunction.
+/// Of a map, or a tap: by itself it is a reading of one step.
 template <ReferenceMapFunction function>
-ReferenceImage map_reference(const void* parameters, const ReferenceInput& input) {
-    const ReadingStep step{.map = function, .parameters = parameters};
-    return read_reference(*input.picture, {&step, 1}, input.picture->width, input.picture->height);
+Reference map_reference() {
+    return {[](const void* parameters, const ReferenceInput& input) {
+                const ReadingStep step{.map = function, .parameters = parameters};
+                return read_reference(*input.picture, {&step, 1}, input.picture->width, input.picture->height);
+            },
+            function};
 }
 template <ReferenceTapFunction function>
-ReferenceImage tap_reference(const void* parameters, const ReferenceInput& input) {
-    const ReadingStep step{.tap = function, .parameters = parameters};
-    return read_reference(*input.picture, {&step, 1}, input.picture->width, input.picture->height);
+Reference tap_reference() {
+    return {[](const void* parameters, const ReferenceInput& input) {
+                const ReadingStep step{.tap = function, .parameters = parameters};
+                return read_reference(*input.picture, {&step, 1}, input.picture->width, input.picture->height);
+            },
+            function};
 }
 
 }  // namespace darkroom

@@ -54,7 +54,7 @@ const EffectInfo& effect_info(const Smaa&) {
         .touch = Touch::Warp,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
         .flat = {.documented = 94, .scene_linear = 94},
-        .mixes_light = true,
+        .works = {.in = WorkingSpace::Light},
         .build = build,
         .reference = smaa_reference,
     };

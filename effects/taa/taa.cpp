@@ -161,7 +161,7 @@ const EffectInfo& effect_info(const Taa&) {
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {FrameImage::Depth, FrameImage::Reactive, FrameImage::Transparency, FrameImage::Exposure},
         .flat = {.documented = 41, .scene_linear = 42},
-        .makes_output = true,
+        .output_scale = {.is_of_output = true},
         .build = build,
         .reference = taa_reference,
         .pre_roll = [](const void* parameters, double) { return taa_pre_roll(taa_of(parameters)); },

@@ -38,7 +38,7 @@ const EffectInfo& effect_info(const Tonemap&) {
         .accepts = Domains::only(Domain::SceneLinear),
         .makes = makes,
         .flat = {.documented = 70, .scene_linear = 70, .starts_on = true},
-        .maps_colors = true,
+        .works = {.in = WorkingSpace::Straight},
         .reference = pointwise_reference<Tonemap, tonemap_reference>,
     };
     return info;

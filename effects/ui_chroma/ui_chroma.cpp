@@ -24,11 +24,9 @@ const EffectInfo& effect_info(const UiChroma&) {
         .parameters = ui_chroma_rows.table(),
         .files = embedded_files("ui_chroma"),
         .touch = Touch::Map,
-        .flat = {.documented = 113, .scene_linear = 113, .is_of_ui = true},
+        .flat = {.documented = 113, .scene_linear = 113, .ui = UiPart::Layer},
         .parts_channels = true,
-        .is_ui = true,
-        .reference = map_reference<ui_chroma_reference>,
-        .reference_map = ui_chroma_reference,
+        .reference = map_reference<ui_chroma_reference>(),
         .is_identity =
             [](const void* parameters) { return !(static_cast<const UiChroma*>(parameters)->strength > 0.0f); },
     };

@@ -20,6 +20,8 @@ constexpr auto ui_composite_rows = describe(
         "Luminance of the interface's white, where the picture is light or for an HDR display.", {1, 10000, Scale::Log},
         unit::nits));
 
+float white_nits(const void* parameters) { return static_cast<const UiComposite*>(parameters)->ui_white_nits; }
+
 }  // namespace
 
 const EffectInfo& effect_info(const UiComposite&) {
@@ -31,12 +33,9 @@ const EffectInfo& effect_info(const UiComposite&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
         .needs = {FrameImage::Ui},
-        .flat = {.documented = 120, .scene_linear = 120, .is_of_ui = true},
-        .has_second = true,
-        .has_second_in_place = true,
-        .works_encoded = true,
-        .working_white_nits =
-            [](const void* parameters) { return static_cast<const UiComposite*>(parameters)->ui_white_nits; },
+        .flat = {.documented = 120, .scene_linear = 120, .ui = UiPart::Picture},
+        .second = Second::InPlace,
+        .works = {.in = WorkingSpace::Encoded, .white_nits = white_nits},
         .reference = ui_composite_reference,
     };
     return info;

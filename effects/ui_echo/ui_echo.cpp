@@ -23,10 +23,8 @@ const EffectInfo& effect_info(const UiEcho&) {
         .parameters = ui_echo_rows.table(),
         .files = embedded_files("ui_echo"),
         .touch = Touch::Tap,
-        .flat = {.documented = 114, .scene_linear = 114, .is_of_ui = true},
-        .is_ui = true,
-        .reference = tap_reference<ui_echo_reference>,
-        .reference_tap = ui_echo_reference,
+        .flat = {.documented = 114, .scene_linear = 114, .ui = UiPart::Layer},
+        .reference = tap_reference<ui_echo_reference>(),
         .is_identity =
             [](const void* parameters) { return !(static_cast<const UiEcho*>(parameters)->strength > 0.0f); },
     };

@@ -26,10 +26,8 @@ const EffectInfo& effect_info(const UiWarp&) {
         .parameters = ui_warp_rows.table(),
         .files = embedded_files("ui_warp"),
         .touch = Touch::Map,
-        .flat = {.documented = 112, .scene_linear = 112, .is_of_ui = true},
-        .is_ui = true,
-        .reference = map_reference<ui_warp_reference>,
-        .reference_map = ui_warp_reference,
+        .flat = {.documented = 112, .scene_linear = 112, .ui = UiPart::Layer},
+        .reference = map_reference<ui_warp_reference>(),
         .is_identity =
             [](const void* parameters) {
                 const UiWarp& values = *static_cast<const UiWarp*>(parameters);

@@ -31,7 +31,7 @@ const EffectInfo& effect_info(const Upscale&) {
         .touch = Touch::Neighbourhood,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
         .flat = {.documented = 96, .scene_linear = 96},
-        .makes_output = true,
+        .output_scale = {.is_of_output = true},
         .build = build,
         .reference = upscale_reference,
     };

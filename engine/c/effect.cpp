@@ -69,9 +69,9 @@ DarkroomResult darkroom_effect_info(DarkroomEffect effect, DarkroomEffectInfo* i
         DarkroomEffectInfo out{};
         out.parameter_count = static_cast<std::uint32_t>(from.parameters.rows.size());
         out.word_count = static_cast<std::uint32_t>(from.parameters.words());
-        out.is_ui = from.is_ui;
-        out.has_second = from.has_second;
-        out.makes_output = from.makes_output;
+        out.is_ui = from.flat.ui == UiPart::Layer;
+        out.has_second = from.has_second();
+        out.makes_output = from.output_scale.is_of_output;
         out.name = effect->name.c_str();
         out.doc = effect->doc.c_str();
         out.page = effect->page.c_str();

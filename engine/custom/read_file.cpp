@@ -92,7 +92,7 @@ Result<> read_needs(Description& out, std::string_view text) {
         if (need)
             out.info.needs.add(*need);
         else
-            out.info.has_second = true;
+            out.info.second = Second::Image;
     } while (!text.empty());
     return {};
 }

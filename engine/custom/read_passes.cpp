@@ -207,7 +207,7 @@ Result<> read_result(Description& out, std::string_view text) {
             fmt::format("@result {}: expected an image or a history that a line before it declares", printable(text)));
     if (!out.result.empty()) return user_error("a second @result; an effect has one");
     out.result = image->name;
-    out.info.output_scale = image->ratio;
+    out.info.output_scale = {.numerator = image->ratio.numerator, .denominator = image->ratio.denominator};
     return {};
 }
 
@@ -306,7 +306,8 @@ Result<> check_passes(Description& out) {
     if (!has_history && out.pre_roll) return user_error("@pre_roll: the file has no history");
     if (out.result.empty()) return {};
     if (out.info.touch == Touch::Warp) return user_error("@touch warp: with @result the passes make the picture");
-    if (out.info.has_second) return user_error("@needs second: the end alone reads it, and with @result there is none");
+    if (out.info.has_second())
+        return user_error("@needs second: the end alone reads it, and with @result there is none");
     out.info.touch = has_history ? Touch::History : Touch::Neighbourhood;
     return {};
 }

@@ -288,7 +288,7 @@ TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
             return is_documented ? info->flat.documented : info->flat.scene_linear;
         };
         for (const EffectInfo* const info : all_effects())
-            if (rank(info) >= 0 && !info->flat.is_of_ui) flat.push_back(info);
+            if (rank(info) >= 0 && !info->flat.is_of_ui()) flat.push_back(info);
         std::ranges::sort(flat, {}, rank);
         composer.clear();
         for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});

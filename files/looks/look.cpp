@@ -96,7 +96,7 @@ void write_stack(std::string& out, const Look& look) {
 LookEntry flat_entry(const EffectInfo& effect, LookOrder order) {
     LookEntry entry = entry_of(effect);
     entry.state.enabled = effect.flat.starts_on;
-    entry.is_of_ui = effect.flat.is_of_ui;
+    entry.is_of_ui = effect.flat.is_of_ui();
     if (order != LookOrder::Documented) return entry;
     for (const DocumentedValue& value : documented_values) {
         if (value.effect != effect.name) continue;

@@ -60,13 +60,57 @@ struct Needs {
     }
 };
 
+/// Has the interface a part in it? Then its keys stand in the table [ui].
+enum class UiPart : std::uint8_t {
+    None,
+    Picture,  ///< it works on the picture that the interface is laid over
+    Layer,    ///< of the interface's own chain: see EntryDesc::is_ui
+};
+
 /// An effect's place in the flat [post_process] table: ranks in the two shipped orders, lowest first; negative: not in
 /// the table.
 struct FlatPlace {
     std::int32_t documented = -1;
     std::int32_t scene_linear = -1;
     bool starts_on = false;  ///< in scene_linear; what is otherwise in documented stands in files/looks/documented.hpp
-    bool is_of_ui = false;   ///< its keys stand in the table [ui]
+    UiPart ui = UiPart::None;
+    std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
+
+    [[nodiscard]] constexpr bool is_of_ui() const { return ui != UiPart::None; }
+};
+
+/// Extent of what an effect with a result of its own makes: a fraction of its input's or, of an upscaler, of what the
+/// frame is finished at. That is the target's where CompileDesc::target_extent is given, else the scene's.
+struct ResultScale {
+    std::uint32_t numerator = 1;
+    std::uint32_t denominator = 1;
+    bool is_of_output = false;
+};
+
+/// Does an effect read a second picture (EntryDesc::second)?
+enum class Second : std::uint8_t {
+    None,
+    Image,  ///< side image `second`
+    /// Its text names no such image, but calls `vec4 <name>_second(Pixel pixel)`: a reading is then made in place.
+    InPlace,
+};
+
+/// What an effect takes the picture's numbers for.
+enum class WorkingSpace : std::uint8_t {
+    Picture,  ///< what they are
+    /// Colours, of which it makes no multiple: of a picture that is multiplied by its alpha it gets them divided, and
+    /// they are multiplied again behind it.
+    Straight,
+    Encoded,  ///< code values of sRGB: where the picture is none, it gets those, straight, and back behind it
+    /// Mixes the colours of several pixels, which is right in light alone. It reads and returns the picture's numbers;
+    /// its text calls `vec4 <name>_light(vec4 color)`, multiplied by alpha where frames are, and `vec4
+    /// <name>_coded(vec4 light)`. Of touch Warp.
+    Light,
+};
+struct Works {
+    WorkingSpace in = WorkingSpace::Picture;
+    /// Of Encoded: luminance of the 1.0 that it works with; null: the picture's white.
+    float (*white_nits)(const void* parameters) = nullptr;
 };
 
 /// A shader or page of an effect, compiled into the library.
@@ -95,35 +139,15 @@ struct EffectInfo {
     ColorState (*makes)(ColorState before, const void* parameters) = nullptr;
     Needs needs{};
     FlatPlace flat;
-    std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
-    OutputScale output_scale;      ///< of effects with a result of their own
-    /// An upscaler: its result has the extent of the frame's output, whatever its input's. That is the target's where
-    /// CompileDesc::target_extent is given, else the scene's.
-    bool makes_output = false;
-    bool has_second = false;  ///< reads a second picture, as side image `second`
-    /// Its text names no image `second`, but calls `vec4 <name>_second(Pixel pixel)`: a reading is then made in place.
-    bool has_second_in_place = false;
+    ResultScale output_scale;
+    Second second = Second::None;
     bool parts_channels = false;  ///< of a map: Place::barrel differs from channel to channel
-    bool is_ui = false;           ///< of the interface's own chain: see EntryDesc::is_ui
-    /// Where the picture is no code values, it gets those of sRGB, too, and back behind it.
-    bool works_encoded = false;
-    /// Of such an effect: luminance of the 1.0 that it works with; null: the picture's white.
-    float (*working_white_nits)(const void* parameters) = nullptr;
+    Works works;
     /// What a path tracer or a camera puts into its pictures itself: occlusion, light in the air, motion.
     bool is_in_traced_light = false;
-    /// Mixes the colours of several pixels, which is right in light alone. It reads and returns the picture's numbers;
-    /// its text calls `vec4 <name>_light(vec4 color)`, multiplied by alpha where frames are, and `vec4
-    /// <name>_coded(vec4 light)`. Of touch Warp.
-    bool mixes_light = false;
-    /// What it makes of a colour is no multiple of that: of a picture that is multiplied by its alpha it gets the
-    /// colours divided, and they are multiplied again behind it.
-    bool maps_colors = false;
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     std::function<void(PassBuilder&)> build{};
-    /// The published equation in double precision; see reference.hpp.
-    ReferenceFunction reference = nullptr;
-    ReferenceMapFunction reference_map = nullptr;  ///< of a map, in its place
-    ReferenceTapFunction reference_tap = nullptr;  ///< of a tap
+    Reference reference{};  ///< the published equation in double precision
     /// What is wrong with values that are each allowed by themselves, as "end = 3: must lie beyond start = 5"; empty:
     /// nothing. Values of a frame may still be so (overrides): shaders must survive them.
     std::string (*conflict)(const void* parameters) = nullptr;
@@ -140,6 +164,10 @@ struct EffectInfo {
     std::function<std::uint32_t(const void* parameters, double delta_time)> pre_roll{};
     /// Of a description that was made at run time: who keeps it longer than its maker holds this.
     std::weak_ptr<const void> owner{};
+
+    [[nodiscard]] bool has_second() const { return second != Second::None; }
+    /// Is what the interface's chain has made its second picture, where the entry names none?
+    [[nodiscard]] bool joins_ui() const { return has_second() && needs.contains(FrameImage::Ui); }
 };
 
 /// Every effect of this build, by name.

@@ -54,7 +54,7 @@ struct PassImageDesc {
     std::uint32_t denominator = 1;
     std::uint32_t mip_levels = 1;
     VkExtent2D extent{};        ///< where it is not 0: of mip level 0, whatever the frame's
-    bool is_of_output = false;  ///< the fraction is one of what the frame is finished at, as EffectInfo::makes_output
+    bool is_of_output = false;  ///< the fraction is one of what the frame is finished at, as ResultScale::is_of_output
 };
 
 /// A pass of one kernel.

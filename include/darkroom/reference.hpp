@@ -88,6 +88,25 @@ using ReferenceMapFunction = ReferencePlace (*)(const void* parameters, Referenc
 using ReferenceTapFunction = Rgba (*)(const void* parameters, Rgba color, const ReferencePlace&,
                                       const ReferenceSampler& read);
 
+/// The reference of an effect, from the function that makes its picture; what reads by places is made of a map or a tap
+/// (effects/shared/reading_reference.hpp), which then join those of their neighbours.
+struct Reference {
+    ReferenceFunction picture = nullptr;
+    ReferenceMapFunction map = nullptr;
+    ReferenceTapFunction tap = nullptr;
+
+    constexpr Reference() = default;
+    constexpr Reference(ReferenceFunction function) : picture(function) {}
+    constexpr Reference(ReferenceFunction function, ReferenceMapFunction own) : picture(function), map(own) {}
+    constexpr Reference(ReferenceFunction function, ReferenceTapFunction own) : picture(function), tap(own) {}
+
+    [[nodiscard]] explicit operator bool() const { return picture != nullptr; }
+    [[nodiscard]] ReferenceImage operator()(const void* parameters, const ReferenceInput& input) const {
+        return picture(parameters, input);
+    }
+    [[nodiscard]] bool is_reading() const { return map != nullptr || tap != nullptr; }
+};
+
 /// Centre of a pixel as uv in (0,1), and its coordinates: what pointwise references are given.
 struct ReferencePixel {
     std::uint32_t x = 0, y = 0;

@@ -23,7 +23,7 @@ std::string run(std::string_view input) {
     if (info.parameters.defaults.size() != info.parameters.words()) return "there are other defaults than words";
     Composer composer(Device::assumed());
     // Twice, since their names meet in one kernel.
-    for (int i = 0; i < 2; ++i) composer.add(info, nullptr, {.second = info.has_second ? scene_color : Handle{}});
+    for (int i = 0; i < 2; ++i) composer.add(info, nullptr, {.second = info.has_second() ? scene_color : Handle{}});
     const Result<Plan> plan = composer.plan({.max_extent = {64, 48},
                                              .depth = {VK_FORMAT_D32_SFLOAT},
                                              .normals = {VK_FORMAT_R16G16B16A16_SFLOAT},

@@ -21,7 +21,7 @@ constexpr unsigned max_seconds = 8;
 
 std::string wrong_kernels(const CustomEffect& effect) {
     Composer composer(Device::assumed());
-    composer.add(effect.info(), nullptr, {.second = effect.info().has_second ? scene_color : Handle{}});
+    composer.add(effect.info(), nullptr, {.second = effect.info().has_second() ? scene_color : Handle{}});
     const CompileDesc desc{.max_extent = {64, 48},
                            .depth = {VK_FORMAT_D32_SFLOAT},
                            .normals = {VK_FORMAT_R16G16B16A16_SFLOAT},

@@ -44,10 +44,10 @@ void fill(Bytes& bytes, Composer& composer) {
     while (!bytes.is_empty() && composer.size() < max_entries) {
         const EffectInfo& info = *all_effects()[bytes.below(all_effects().size())];
         const std::uint32_t flags = bytes.below(256);
-        EntryDesc desc{.is_ui = (flags & 1) != 0 && info.flat.is_of_ui, .enabled = (flags & 2) == 0};
+        EntryDesc desc{.is_ui = (flags & 1) != 0 && info.flat.is_of_ui(), .enabled = (flags & 2) == 0};
         if ((flags & 4) != 0) desc.input = handle(bytes, composer);
         if ((flags & 8) != 0) desc.source = handle(bytes, composer);
-        if ((flags & 16) != 0 || info.has_second) desc.second = handle(bytes, composer);
+        if ((flags & 16) != 0 || info.has_second()) desc.second = handle(bytes, composer);
         if ((flags & 32) != 0) desc.mask = handle(bytes, composer);
         if ((flags & 64) != 0)
             desc.opacity = static_cast<float>(bytes.below(3)) / 2, desc.blend = BlendMode(bytes.below(9));

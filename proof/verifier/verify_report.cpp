@@ -92,8 +92,8 @@ darkroom::Look look_of(const Subject& subject) {
     for (const darkroom::verify::Step& step : subject.steps) {
         darkroom::LookEntry& entry = out.entries.emplace_back(darkroom::LookEntry{.effect = step.info});
         entry.words = step.words;
-        entry.is_of_ui = step.info->is_ui;
-        if (step.info->has_second && !step.info->needs.contains(darkroom::FrameImage::Ui)) entry.second = "alpha";
+        entry.is_of_ui = step.info->flat.ui == darkroom::UiPart::Layer;
+        if (step.info->has_second() && !step.info->joins_ui()) entry.second = "alpha";
         for (const darkroom::ParamInfo& row : step.info->parameters.rows) {
             if (row.kind != darkroom::Kind::Resource) continue;
             entry.resources.push_back({std::string(row.name), row.is_picture ? "picture.exr" : "table.cube", nullptr});

@@ -89,9 +89,9 @@ Words seen_words(std::mt19937& random, const EffectInfo& info) {
 /// An effect of the interface is seen in what joins the two alone.
 Subject alone(const EffectInfo& info, std::string name, Words words) {
     Subject out{.name = std::move(name), .steps = {{&info, std::move(words)}}};
-    if (!info.is_ui) return out;
+    if (info.flat.ui != UiPart::Layer) return out;
     for (const EffectInfo* const other : all_effects())
-        if (other->has_second && other->needs.contains(FrameImage::Ui)) {
+        if (other->joins_ui()) {
             out.steps.push_back({other, defaults_of(*other)});
             break;
         }
@@ -101,7 +101,7 @@ Subject alone(const EffectInfo& info, std::string name, Words words) {
 Subject chain_of(std::string name, std::int32_t FlatPlace::*rank, const std::vector<Subject>& usual) {
     Subject out{.name = std::move(name), .steps = {}};
     for (const Subject& subject : usual)
-        if (subject.steps[0].info->flat.*rank >= 0 && !subject.steps[0].info->is_ui)
+        if (subject.steps[0].info->flat.*rank >= 0 && subject.steps[0].info->flat.ui != UiPart::Layer)
             out.steps.push_back(subject.steps[0]);
     std::ranges::stable_sort(out.steps, {}, [&](const Step& step) { return step.info->flat.*rank; });
     return out;
@@ -197,7 +197,7 @@ Brought Brought::disturbed(std::mt19937& random, const Disturbance& by) const {
 }
 
 bool makes_output(const Subject& subject) {
-    return std::ranges::any_of(subject.steps, [](const Step& step) { return step.info->makes_output; });
+    return std::ranges::any_of(subject.steps, [](const Step& step) { return step.info->output_scale.is_of_output; });
 }
 
 bool filters(const Subject& subject) {
@@ -205,7 +205,7 @@ bool filters(const Subject& subject) {
     return std::ranges::any_of(subject.steps, [](const Step& step) {
         const EffectInfo& info = *step.info;
         if (info.touch == Touch::Map || info.touch == Touch::Tap || info.output_scale.denominator != 1 ||
-            info.makes_output)
+            info.output_scale.is_of_output)
             return true;
         return std::ranges::any_of(info.files, [](const EffectFile& file) {
             return file.text.find("sample_") != std::string_view::npos ||
@@ -248,7 +248,7 @@ std::vector<Subject> subjects(const SubjectOptions& options) {
     };
     std::vector<Subject> usual;
     for (const EffectInfo* const info : all_effects()) {
-        if (info->reference == nullptr && info->reference_map == nullptr && info->reference_tap == nullptr) continue;
+        if (!info->reference) continue;
         if (!options.effects.empty() && std::ranges::find(options.effects, info->name) == options.effects.end())
             continue;
         Words words = defaults_of(*info);
@@ -284,8 +284,8 @@ Result<> fill(const Subject& subject, Composer& composer, const Brought& brought
                                row.is_picture ? composer.define(brought.picture) : composer.define(brought.table));
             words[row.word] = made.id;
         }
-        EntryDesc desc{.is_ui = step.info->is_ui};
-        if (step.info->has_second && !step.info->needs.contains(FrameImage::Ui)) desc.second = scene_alpha;
+        EntryDesc desc{.is_ui = step.info->flat.ui == UiPart::Layer};
+        if (step.info->has_second() && !step.info->joins_ui()) desc.second = scene_alpha;
         composer.add(*step.info, words.data(), desc);
     }
     return {};

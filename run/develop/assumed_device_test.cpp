@@ -18,7 +18,7 @@ using gpu::test::must;
 
 void fill_with_everything(Composer& composer) {
     for (const EffectInfo* const effect : all_effects())
-        if (!effect->has_second) composer.add(*effect, nullptr);
+        if (!effect->has_second()) composer.add(*effect, nullptr);
 }
 
 CompileDesc everything_given(Device& device, DevelopTarget target) {

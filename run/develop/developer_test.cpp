@@ -38,7 +38,7 @@ TEST(ComposeHalf, EveryHalfComesBackAndNothingElseIsOne) {
 /// since the same one comes several times.
 void fill(Composer& composer) {
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.documented >= 0 && !effect->makes_output)
+        if (effect->flat.documented >= 0 && !effect->output_scale.is_of_output)
             composer.add(*effect, nullptr, {.source = scene_color});
 }
 

@@ -167,8 +167,7 @@ class Chain {
     Handle second_of(std::size_t entry) const {
         const EffectInfo& info = *composer_.info(composer_.entry(entry));
         const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
-        return desc.second.is_given() || !info.has_second || !info.needs.contains(FrameImage::Ui) ? desc.second
-                                                                                                  : before(entry, true);
+        return desc.second.is_given() || !info.joins_ui() ? desc.second : before(entry, true);
     }
     /// Does it name an interface that is not there, or what would be made of one?
     bool is_missing(Handle wire, std::size_t entry) const {
@@ -284,16 +283,16 @@ class Chain {
             return {};
         }
         is_left_out_.push_back(false);
-        if (info.has_second && !second_of(index).is_given())
+        if (info.has_second() && !second_of(index).is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, info.name));
         const std::size_t from = input_of(desc, index);
         const ColorState before = states_[from];
         const bool is_off =
             !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
-        if (!is_off && info.reference == nullptr)
+        if (!is_off && !info.reference)
             return user_error(fmt::format("stack entry '{}': {} has no reference", desc.name, info.name));
-        const bool is_reading = (info.reference_map != nullptr || info.reference_tap != nullptr) && is_plain(desc);
+        const bool is_reading = info.reference.is_reading() && is_plain(desc);
         if (is_reading)
             values_.back() = read_on(info, words, from, is_off);
         else
@@ -306,13 +305,14 @@ class Chain {
     std::size_t keep_result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
                             std::size_t index, std::size_t from, bool is_off) {
         const bool has_result = info.touch == Touch::Neighbourhood || info.touch == Touch::History;
-        const graph::Size size = !has_result ? sizes_[from]
-                                 : info.makes_output
-                                     ? frame_output()
-                                     : sizes_[from].scaled(info.output_scale.numerator, info.output_scale.denominator);
+        const ResultScale& scale = info.output_scale;
+        const graph::Size size =
+            has_result ? (scale.is_of_output ? frame_output() : sizes_[from]).scaled(scale.numerator, scale.denominator)
+                       : sizes_[from];
         if (is_off) return keep(pictures_[at_size(from, size)], size);
         const bool is_wrapped = plan::may_need_work(info, states_[from].domain == Domain::Encoded, desc.is_ui);
-        if (info.mixes_light || !plan::maps_without_alpha(info, is_wrapped, input_.is_color_associated && !desc.is_ui))
+        if (info.works.in == WorkingSpace::Light ||
+            !plan::maps_without_alpha(info, is_wrapped, input_.is_color_associated && !desc.is_ui))
             return keep(encoded_result(info, desc, words, index, from), size);
         const ColorState state = states_[from];
         from = keep(alpha_divided(pictures_[from]), sizes_[from]);
@@ -332,7 +332,7 @@ class Chain {
     ReferenceImage picture_of(const Reading& reading, std::uint32_t width, std::uint32_t height) const {
         std::vector<ReadingStep> steps;
         for (const auto& [info, words] : reading.steps)
-            steps.push_back({info->reference_map, info->reference_tap, words.data()});
+            steps.push_back({info->reference.map, info->reference.tap, words.data()});
         return read_reference(pictures_[reading.picture], steps, width, height);
     }
     std::size_t read_on(const EffectInfo& info, const std::vector<std::uint32_t>& words, std::size_t from,
@@ -352,10 +352,10 @@ class Chain {
                                   const std::vector<std::uint32_t>& words, std::size_t index, std::size_t from) {
         const ColorState state = states_[from];
         const bool may_work = plan::may_need_work(info, state.domain == Domain::Encoded, false);
-        if (info.mixes_light || !may_work || plan::work_of(info, state, words.data()).word == 0)
+        if (info.works.in == WorkingSpace::Light || !may_work || plan::work_of(info, state, words.data()).word == 0)
             return result(info, desc, words, index, from);
-        const double white = info.working_white_nits == nullptr ? double{state.white_nits}
-                                                                : double{info.working_white_nits(words.data())};
+        const double white =
+            info.works.white_nits == nullptr ? double{state.white_nits} : double{info.works.white_nits(words.data())};
         ReferenceImage encoded = pictures_[from];
         const auto curve = [](std::array<double, 3> v, auto function) {
             return std::array{function(v[0]), function(v[1]), function(v[2])};
@@ -381,9 +381,9 @@ class Chain {
             return wire.is_given() ? &pictures_[at_size(value_of(wire, index), size)] : otherwise;
         };
         const ReferenceImage* second = nullptr;
-        if (const Handle wire = second_of(index); info.has_second) {
+        if (const Handle wire = second_of(index); info.has_second()) {
             const auto reading = readings_.find(value_of(wire, index));
-            const bool is_in_place = info.has_second_in_place && reading != readings_.end();
+            const bool is_in_place = info.second == Second::InPlace && reading != readings_.end();
             second = is_in_place ? &pictures_[keep(picture_of(reading->second, base.width, base.height))]
                                  : wired(wire, nullptr);
         }

@@ -89,7 +89,8 @@ TEST_F(CliTemporal, StoredFramesAreDevelopedIntoLargerPictures) {
 
 TEST_F(CliTemporal, SequencesOfLooksThatGatherFramesAreJittered) {
     const auto all = all_effects();
-    const auto found = std::ranges::find_if(all, [](const EffectInfo* effect) { return effect->makes_output; });
+    const auto found =
+        std::ranges::find_if(all, [](const EffectInfo* effect) { return effect->output_scale.is_of_output; });
     if (found == all.end()) GTEST_SKIP() << "this build has no effect that makes the output";
     const std::string name((*found)->name);
     write("gathers.toml", "format = 1\n[[stack]]\neffect = \"" + name + "\"\n");

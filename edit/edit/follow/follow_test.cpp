@@ -61,7 +61,7 @@ Look random_stack(std::mt19937& random) {
     Look look{.is_flat = false, .shown_name = "a stack"};
     for (int i = 0; i < 6; ++i) {
         const EffectInfo& effect = *all_effects()[test::below(random, all_effects().size())];
-        if (!effect.flat.is_of_ui) look.entries.push_back(entry_of(effect));
+        if (!effect.flat.is_of_ui()) look.entries.push_back(entry_of(effect));
     }
     return look;
 }

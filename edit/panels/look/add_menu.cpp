@@ -83,7 +83,7 @@ void add(PanelState& state, const EffectInfo& effect) {
     if (addition.kind != Kind::IsThere) return add_now(state, effect);
     PanelState::Question question{.text = fmt::format("{} is in the table already, and on.", name),
                                   .answers = {{"Show it", [&state, entry = addition.entry] { state.select(entry); }}}};
-    if (!effect.flat.is_of_ui) {
+    if (!effect.flat.is_of_ui()) {
         question.text += fmt::format(" For a second one: {}", becomes_stack);
         question.answers.emplace_back("Add a second one", make_stack);
     }

@@ -29,7 +29,7 @@ WireText text_of(std::string_view wire) {
 /// Is it of use to the effect?
 bool takes(const EffectInfo& effect, std::string_view wire) {
     if (wire == "source") return effect.build != nullptr;
-    if (wire == "second") return effect.has_second || effect.has_second_in_place;
+    if (wire == "second") return effect.has_second();
     return true;
 }
 

@@ -148,7 +148,7 @@ TEST(PanelStack, AddsWhatIsSearchedFor) {
 // Every effect but one has a place in the flat table.
 TEST(PanelStack, AddingKeepsAFlatTableOrAsks) {
     for (const EffectInfo* const effect : all_effects()) {
-        if (effect->flat.is_of_ui) continue;
+        if (effect->flat.is_of_ui()) continue;
         TestPanels own(default_look(), tall_panel);
         const Look before = own.document.look();
         const auto add = [&] {

@@ -76,7 +76,7 @@ std::vector<KeyLine> key_lines() {
         for (const Key& key : table)
             if (function_key(key.key) == number) out.push_back({std::string(key.shown), key.doc});
         for (const darkroom::EffectInfo* const effect : darkroom::all_effects())
-            if (effect->toggle_key == number) out.push_back({fmt::format("F{}", number), effect->name});
+            if (effect->flat.toggle_key == number) out.push_back({fmt::format("F{}", number), effect->name});
     }
     for (const Key& key : table)
         if (function_key(key.key) == 0)

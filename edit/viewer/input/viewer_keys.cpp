@@ -169,7 +169,7 @@ void Viewer::toggle_effects(std::uint32_t number) {
     bool is_any_on = false;
     for (std::size_t i = 0; i < names.size(); ++i) {
         const darkroom::LookEntry& entry = document_->look().entries[i];
-        if (entry.effect->toggle_key != number) continue;
+        if (entry.effect->flat.toggle_key != number) continue;
         chosen.push_back(names[i]);
         is_any_on = is_any_on || entry.state.enabled.on != 0;
     }

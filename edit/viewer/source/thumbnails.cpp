@@ -33,9 +33,9 @@ Result<Look> with_effect(const Look& look, const EffectInfo& effect) {
     Look out = look;
     const Result<std::string> name = darkroom::edit::add_effect(out, effect);
     // What is there already, and once only, is shown as it is.
-    if (!name) return effect.flat.is_of_ui ? Result<Look>(out) : failure(name.error());
+    if (!name) return effect.flat.is_of_ui() ? Result<Look>(out) : failure(name.error());
     darkroom::LookEntry* const entry = find_entry(out, *name);
-    if (entry != nullptr && effect.has_second && entry->second.empty()) entry->second = "scene";
+    if (entry != nullptr && effect.has_second() && entry->second.empty()) entry->second = "scene";
     if (entry == nullptr || effect.is_identity == nullptr || !effect.is_identity(entry->words.data())) return out;
     for (const darkroom::ParamInfo& row : effect.parameters.rows)
         if (row.is_amount && row.kind == darkroom::Kind::Float)

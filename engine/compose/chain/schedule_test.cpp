@@ -35,7 +35,7 @@ std::vector<Entry> random_stack(std::mt19937& random) {
         if (below(3) == 0) desc.input = handle();
         if (below(2) == 0) desc.source = handle();
         if (below(3) == 0) desc.mask = handle();
-        if (info.has_second) desc.second = i == 0 ? scene_color : Handle{1 + below(i)};
+        if (info.has_second()) desc.second = i == 0 ? scene_color : Handle{1 + below(i)};
         if (below(3) == 0) desc.opacity = 0.5f;
         stack.push_back(entry_of(info.name, stack, desc));
     }

@@ -68,7 +68,7 @@ TEST_F(ComposeComputeQueue, RunsWhatComputeCan) {
     for (const EffectInfo* const info : all_effects()) {
         SCOPED_TRACE(info->name);
         const auto fill = [&](Composer& composer) {
-            composer.add(*info, nullptr, info->has_second ? EntryDesc{.second = scene_color} : EntryDesc{});
+            composer.add(*info, nullptr, info->has_second() ? EntryDesc{.second = scene_color} : EntryDesc{});
         };
         std::string error;
         if (info->needs.contains(FrameImage::Ui) || info->needs.contains(FrameImage::Shadows)) continue;

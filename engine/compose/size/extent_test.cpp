@@ -47,7 +47,7 @@ const EffectInfo enlarge{
     .parameters = {.struct_name = "Enlarge"},
     .files = extent_files,
     .touch = Touch::Neighbourhood,
-    .makes_output = true,
+    .output_scale = {.is_of_output = true},
     .build =
         [](PassBuilder& builder) {
             builder.result(

@@ -22,7 +22,7 @@ class ComposeAtCompile : public testing::Test {
     /// Everything that a plan of this effect alone consists of.
     [[nodiscard]] std::string planned(const EffectInfo& info, const Words& words) const {
         plan::Entry entry{.id = 1, .info = &info, .desc = {}, .resources = resources_, .base = words, .overrides = {}};
-        if (info.has_second) entry.desc.second = scene_color;
+        if (info.has_second()) entry.desc.second = scene_color;
         entry.desc.name = "entry";
         const CompileDesc desc{.max_extent = {640, 360},
                                .depth = {VK_FORMAT_D32_SFLOAT},

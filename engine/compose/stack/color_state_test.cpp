@@ -264,8 +264,8 @@ ReferenceImage picture_of_an_edge() {
     return test::round_to_float(out);
 }
 
-// Of all effects of a pixel's colour alone: one that forgets to say maps_colors is found, too. The others make a
-// multiple of it, or add what they make of pixels around it.
+// Of all effects of a pixel's colour alone: one that forgets to say WorkingSpace::Straight is found, too. The others
+// make a multiple of it, or add what they make of pixels around it.
 TEST(ComposeColorState, ColoursAreMappedWithoutTheirAlpha) {
     const std::set<std::string_view> others{"anamorphic_streaks", "arena_bloom",    "auto_exposure", "bloom",
                                             "classic_bloom",      "depth_of_field", "dither",        "frame_blend",
@@ -274,7 +274,7 @@ TEST(ComposeColorState, ColoursAreMappedWithoutTheirAlpha) {
     const ReferenceImage straight = picture_of_an_edge(), associated = multiplied_by_alpha(straight);
     std::size_t tried = 0;
     for (const EffectInfo* const info : all_effects()) {
-        if (info->touch != Touch::Pointwise || info->has_second || others.contains(info->name)) continue;
+        if (info->touch != Touch::Pointwise || info->has_second() || others.contains(info->name)) continue;
         SCOPED_TRACE(info->name);
         ++tried;
         for (const float opacity : {1.0f, 0.5f}) {

@@ -308,7 +308,7 @@ class Graph {
             if (&info == &test::absent_effect) continue;
             // What compares or counts levels may fall to the other side by a rounding.
             if (info.name == "fxaa" || info.name == "posterize") return std::nullopt;
-            if (info.reference == nullptr || !is_exact || info.output_scale.denominator != 1) return std::nullopt;
+            if (!info.reference || !is_exact || info.output_scale.denominator != 1) return std::nullopt;
         }
         const bool is_srgb = surroundings_.format == VK_FORMAT_R8G8B8A8_SRGB;
         const Domain domain =
@@ -424,7 +424,8 @@ TEST_F(ComposeFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
 
 TEST_F(ComposeFusionProperty, EffectsOfManyKernelsAreNoException) {
     Count count;
-    for (std::uint32_t seed = 200; seed < (test::is_small() ? 202U : 208U); ++seed) expect_one_picture(seed, Effort::Thorough, count);
+    for (std::uint32_t seed = 200; seed < (test::is_small() ? 202U : 208U); ++seed)
+        expect_one_picture(seed, Effort::Thorough, count);
 }
 
 TEST_F(SoakFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {

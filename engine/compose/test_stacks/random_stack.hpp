@@ -98,7 +98,7 @@ inline void fill_random(std::mt19937& random, Composer& composer, const StackDes
         if (one_in(random, desc.one_input_in)) inputs.input = random_handle(random, composer, i);
         if (one_in(random, 3)) inputs.source = random_handle(random, composer, i);
         if (one_in(random, 5)) inputs.mask = random_handle(random, composer, i);
-        if (info->has_second) inputs.second = i == 0 ? scene_color : composer.entry(below(random, i));
+        if (info->has_second()) inputs.second = i == 0 ? scene_color : composer.entry(below(random, i));
         if (one_in(random, 3)) inputs.opacity = static_cast<float>(between(random, 0, 1));
         if (one_in(random, 3)) inputs.blend = static_cast<BlendMode>(below(random, 9));
         inputs.enabled = !one_in(random, 8);

@@ -264,13 +264,13 @@ ReferenceImage filter_loss(const ReferenceImage& picture, double pixels_beside) 
 
 void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture,
                                   double ulps) {
-    ASSERT_NE(info.reference, nullptr) << info.name;
+    ASSERT_TRUE(info.reference) << info.name;
     const ReferenceImage expected =
         info.reference(parameters, {.picture = &picture, .source = &picture, .second = &picture});
     const auto run = [&](KernelStage stage) {
         return develop(
             [&](Composer& composer) {
-                composer.add(info, parameters, info.has_second ? EntryDesc{.second = scene_color} : EntryDesc{});
+                composer.add(info, parameters, info.has_second() ? EntryDesc{.second = scene_color} : EntryDesc{});
             },
             picture, {.kernels = stage});
     };

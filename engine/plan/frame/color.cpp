@@ -32,25 +32,26 @@ ColorState written_state(ColorState target, VkFormat format) {
 }  // namespace
 
 bool may_need_work(const EffectInfo& info, bool may_be_encoded, bool is_always_encoded) {
-    if (info.mixes_light) return may_be_encoded || is_always_encoded;
+    if (info.works.in == WorkingSpace::Light) return may_be_encoded || is_always_encoded;
     if (info.touch != Touch::Pointwise || is_always_encoded) return false;
-    if (info.works_encoded) return true;
-    return may_be_encoded && info.accepts.contains(Domain::Encoded) && !info.is_last_step && !info.has_second;
+    if (info.works.in == WorkingSpace::Encoded) return true;
+    return may_be_encoded && info.accepts.contains(Domain::Encoded) && !info.is_last_step && !info.has_second();
 }
 
 Work work_of(const EffectInfo& info, const ColorState& before, const void* parameters) {
-    if (info.mixes_light) {
+    if (info.works.in == WorkingSpace::Light) {
         if (before.domain != Domain::Encoded) return {};
         // A mix is the same in all primaries.
         ColorState own = before;
         own.primaries = Primaries::Rec709;
         return {.word = word_of(own), .limit = before.peak_nits / before.unit_nits(), .ootf = ootf_of(before)};
     }
-    const bool is_wanted = before.domain == Domain::Encoded ? !before.is_standard_code() : info.works_encoded;
+    const bool works_encoded = info.works.in == WorkingSpace::Encoded;
+    const bool is_wanted = before.domain == Domain::Encoded ? !before.is_standard_code() : works_encoded;
     // The interface is sRGB's, primaries included.
-    const bool is_other = info.works_encoded && before.primaries != Primaries::Rec709;
+    const bool is_other = works_encoded && before.primaries != Primaries::Rec709;
     if (!is_wanted && !is_other) return {};
-    const float white = info.working_white_nits == nullptr ? before.white_nits : info.working_white_nits(parameters);
+    const float white = info.works.white_nits == nullptr ? before.white_nits : info.works.white_nits(parameters);
     const float unit = before.unit_nits();
     Work out{.word = word_of(before), .scale = unit / white, .ootf = ootf_of(before)};
     if (before.domain == Domain::Encoded) out.limit = before.peak_nits / unit;
@@ -95,8 +96,8 @@ ColorState scene_state(const CompileDesc& desc) {
 }
 
 bool maps_without_alpha(const EffectInfo& info, bool is_wrapped, bool is_associated) {
-    if (info.mixes_light) return is_associated && is_wrapped;
-    return is_associated && info.touch == Touch::Pointwise && (info.maps_colors || is_wrapped);
+    if (info.works.in == WorkingSpace::Light) return is_associated && is_wrapped;
+    return is_associated && info.touch == Touch::Pointwise && (info.works.in == WorkingSpace::Straight || is_wrapped);
 }
 
 FinishAlpha finish_alpha(const CompileDesc& desc, Finish finish) {

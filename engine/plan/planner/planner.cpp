@@ -118,10 +118,10 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
         step.images.push_back(side.name);
         side_inputs.push_back(side.input);
     }
-    if (info.has_second) {
+    if (info.has_second()) {
         const std::size_t value = value_of(second_of(entry), entry);
         step.images.emplace_back("second");
-        if (info.has_second_in_place && desc_.fuse && values_[value].reading != no_reading) {
+        if (info.second == Second::InPlace && desc_.fuse && values_[value].reading != no_reading) {
             const Reading reading = readings_[values_[value].reading];
             side_inputs.push_back({.version = reading.image});
             return append(entry, input, std::move(step), std::move(side_inputs), &reading);
@@ -202,7 +202,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
     }
     for (std::size_t i = 0; i < sides.size(); ++i) {
         const bool is_second = !step.is_merge && step.images[i] == "second";
-        if (is_second && step.info->has_second_in_place) {
+        if (is_second && step.info->second == Second::InPlace) {
             step.is_second_resampled = !has_size(sides[i].version, from.size);
         } else if (step.is_merge || is_second) {
             DARKROOM_TRY_VALUE(auto version, at_size(sides[i].version, from.size, fmt::format("{}.resampled", name)));

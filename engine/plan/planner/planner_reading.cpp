@@ -60,12 +60,10 @@ Result<> Planner::add_step(std::size_t kernel, FusedStep step) {
 Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t input) {
     const EffectInfo& info = *stack_[entry].info;
     const graph::Size target = frame_output();
-    if (target.extent == graph::Extent::Scene || program_.is_left_out[entry] || !info.needs.contains(FrameImage::Ui) ||
-        !info.has_second)
-        return input;
+    if (target.extent == graph::Extent::Scene || program_.is_left_out[entry] || !info.joins_ui()) return input;
     const auto stays_in_kernel = [&](std::uint32_t i) {
         const Entry& other = stack_[i];
-        return other.info->touch == Touch::Pointwise && !other.info->has_second && !other.desc.mask.is_given() &&
+        return other.info->touch == Touch::Pointwise && !other.info->has_second() && !other.desc.mask.is_given() &&
                (other.info->build == nullptr || other.info->is_last_step) && !other.desc.input.is_given();
     };
     if (!desc_.fuse || values_[input].size == target) return input;

@@ -23,8 +23,8 @@ graph::Size Planner::frame_output() const {
 }
 
 graph::Size Planner::result_size(const EffectInfo& info, graph::Size input) const {
-    return info.makes_output ? frame_output()
-                             : input.scaled(info.output_scale.numerator, info.output_scale.denominator);
+    const ResultScale& scale = info.output_scale;
+    return (scale.is_of_output ? frame_output() : input).scaled(scale.numerator, scale.denominator);
 }
 
 Result<> Planner::check_size(std::uint32_t entry, graph::Size size) const {
@@ -66,7 +66,7 @@ Result<> Planner::check_handles() const {
         DARKROOM_TRY(check(i, desc.source, "source"));
         DARKROOM_TRY(check(i, desc.second, "second"));
         DARKROOM_TRY(check(i, desc.mask, "mask"));
-        if (stack_[i].info->has_second && !second_of(i).is_given())
+        if (stack_[i].info->has_second() && !second_of(i).is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, stack_[i].info->name));
     }
@@ -90,8 +90,7 @@ std::uint32_t Planner::last_of_picture() const {
 
 Handle Planner::second_of(std::uint32_t entry) const {
     const Entry& own = stack_[entry];
-    if (own.desc.second.is_given() || !own.info->has_second || !own.info->needs.contains(FrameImage::Ui))
-        return own.desc.second;
+    if (own.desc.second.is_given() || !own.info->joins_ui()) return own.desc.second;
     const std::uint32_t last = entry_before(entry, true);
     return last == ui_entry ? ui_layer : Handle{stack_[last].id};
 }

@@ -327,9 +327,10 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const FusedStep& step = steps[i];
         const std::string suffix = place_suffix(step.place), prefix = block_prefix(*step.info, step.place);
-        const bool is_of_reading = !step.reads.empty();
+        const bool is_of_reading = !step.reads.empty(), mixes_light = step.info->works.in == WorkingSpace::Light;
         has_reading |= is_of_reading;
-        if (step.info->has_second_in_place && !step.is_merge) declarations += second_function(step, steps.first(i));
+        if (step.info->second == Second::InPlace && !step.is_merge)
+            declarations += second_function(step, steps.first(i));
         if (!step.is_merge) {
             declarations += parameter_struct(step.info->parameters, step.place);
             declarations += parameter_loader(*step.info, step.place, step.baked);
@@ -339,7 +340,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             if (step.info->touch == Touch::Tap)
                 declarations += fmt::format("vec4 {}_read{}(vec2 uv) {{ return sample_linear({}, uv); }}\n",
                                             step.info->name, suffix, step.reads);
-            if (step.info->mixes_light) {
+            if (mixes_light) {
                 has_wrap |= step.is_wrapped;
                 has_alpha |= step.divides_alpha;
                 declarations += light_functions(step, prefix, suffix);
@@ -363,7 +364,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                               : fmt::format("{}opacity_", prefix);
             layer = fmt::format("merge_layer(color, {}, {}, {}blend_)", layer, opacity, prefix);
         }
-        if (!step.info->mixes_light && step.is_wrapped && step.work != 0u) {
+        if (!mixes_light && step.is_wrapped && step.work != 0u) {
             has_wrap = true;
             const std::string word = work_word(step, prefix);
             declarations += fmt::format(
@@ -374,7 +375,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                 suffix, word, prefix, layer);
             layer = fmt::format("wrapped{}(color, pixel)", suffix);
         }
-        if (!step.info->mixes_light && step.divides_alpha) {
+        if (!mixes_light && step.divides_alpha) {
             has_alpha = true;
             declarations += fmt::format(
                 "vec4 without_alpha{}(vec4 color, Pixel pixel) {{\n    color = alpha_divided(color);\n"

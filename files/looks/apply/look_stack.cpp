@@ -124,7 +124,7 @@ Result<std::vector<PlacedEntry>> stack_of(const Look& look, const ApplyOptions& 
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, name, options)) continue;
         PlacedEntry placed{.entry = entry,
                            .name = name,
-                           .desc = {.is_ui = entry->is_of_ui && entry->effect->is_ui,
+                           .desc = {.is_ui = entry->is_of_ui && entry->effect->flat.ui == UiPart::Layer,
                                     .name = name,
                                     .output = entry->output,
                                     .enabled = is_own ? entry->state.enabled.on != 0 : true,

@@ -62,7 +62,7 @@ std::string flag_text(std::string toml) {
 
 /// The table that an effect's keys stand in.
 std::string table_of(const EffectInfo& effect) {
-    return effect.flat.is_of_ui ? "[ui]\n" : "[post_process]\norder = \"scene_linear\"\n";
+    return effect.flat.is_of_ui() ? "[ui]\n" : "[post_process]\norder = \"scene_linear\"\n";
 }
 
 Look with_file(const EffectInfo& effect, const ParamInfo& row, const std::string& value) {
@@ -115,7 +115,7 @@ TEST(Precedence, AKeyChangesItsOwnValueAlone) {
             }
             if (other != &effect) {
                 // The table [ui] turns all of its effects on.
-                const bool is_of_table = effect.flat.is_of_ui && other->flat.is_of_ui;
+                const bool is_of_table = effect.flat.is_of_ui() && other->flat.is_of_ui();
                 EXPECT_EQ(is_on(file, *other), plain.state.enabled.on != 0 || is_of_table) << other->name;
             }
         }
@@ -178,7 +178,7 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
         if (does_switch) switches.insert(key);
         EXPECT_EQ(is_on(with_file(effect, row, value), effect),
                   named.contains(key) || flat_entry(effect, LookOrder::SceneLinear).state.enabled.on != 0 ||
-                      effect.flat.is_of_ui);
+                      effect.flat.is_of_ui());
         Look typed = default_look();
         ASSERT_TRUE(override_look(
             typed, std::array{LookOverride{enabled, "off", ""}, LookOverride{key, flag_text(value), ""}}));

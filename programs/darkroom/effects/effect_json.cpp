@@ -59,7 +59,7 @@ Json effect_json(const EffectInfo& effect) {
     Json needs = Json::array(), rows = Json::array();
     for (const darkroom::plan::FrameInput& input : darkroom::plan::frame_inputs)
         if (effect.needs.contains(input.image)) needs.push_back(input.name);
-    if (effect.has_second) needs.push_back("second");
+    if (effect.has_second()) needs.push_back("second");
     for (const darkroom::ParamInfo& row : effect.parameters.rows) rows.push_back(json_of(effect, row));
     const bool is_flat = effect.flat.documented >= 0 || effect.flat.scene_linear >= 0;
     return {{"name", effect.name},
@@ -67,7 +67,7 @@ Json effect_json(const EffectInfo& effect) {
             {"is_flat", is_flat},
             {"starts_on", is_flat && effect.flat.starts_on},
             {"flag", darkroom::flag_name(darkroom::flat_key(effect.name, "enabled"))},
-            {"toggle_key", effect.toggle_key},
+            {"toggle_key", effect.flat.toggle_key},
             {"needs", std::move(needs)},
             {"parameters", std::move(rows)}};
 }

@@ -63,7 +63,7 @@ int show(const Options& options) {
         fmt::print("# {}\n\n{}\n", effect->name, effect->doc);
     else
         fmt::print("{}", found->text);
-    if (effect->toggle_key != 0) fmt::print("\nA viewer switches it by F{}.\n", effect->toggle_key);
+    if (effect->flat.toggle_key != 0) fmt::print("\nA viewer switches it by F{}.\n", effect->flat.toggle_key);
     fmt::print("\n## Parameters\n\n{}", darkroom::documentation(effect->parameters, effect->name));
     return exit_ok;
 }

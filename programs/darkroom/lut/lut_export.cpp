@@ -58,9 +58,8 @@ Result<std::string> obstacle(const LookEntry& entry) {
         if (wire.is_reference && !(entry.*wire.member).empty())
             return fmt::format("is wired to {}", entry.*wire.member);
     if (effect.needs.contains(darkroom::FrameImage::Depth)) return "reads the depth";
-    if (effect.needs.bits != 0 || effect.has_second) return "reads another picture";
-    if (effect.touch != darkroom::Touch::Pointwise || effect.reference == nullptr)
-        return "reads other pixels than its own";
+    if (effect.needs.bits != 0 || effect.has_second()) return "reads another picture";
+    if (effect.touch != darkroom::Touch::Pointwise || !effect.reference) return "reads other pixels than its own";
     Look alone{.is_flat = false, .entries = {entry}, .shown_name = "the look"};
     std::mt19937 random(5);
     std::uniform_real_distribution<double> stops(-8, 5);

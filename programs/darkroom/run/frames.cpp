@@ -259,7 +259,7 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
         const bool is_asked_for = named != names.end() && look.entries[named - names.begin()].is_asked_for;
         const bool is_flat = (look.is_flat || look.was_flat) &&
                              darkroom::flat_entry(info, look.order).state.enabled.on != 0 && !is_asked_for;
-        const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui)) &&
+        const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui())) &&
                               std::ranges::equal(composer.words(*entry), darkroom::flat_entry(info, look.order).words);
         if (!composer.desc(*entry)->enabled || info.is_last_step) continue;
         if (is_usual) {

@@ -11,7 +11,7 @@ namespace app {
 bool gathers_frames(const darkroom::Look& look) {
     return look.is_enabled && std::ranges::any_of(look.entries, [](const darkroom::LookEntry& entry) {
                // Not an upscaler of single frames.
-               return entry.state.enabled.on != 0 && entry.effect->makes_output &&
+               return entry.state.enabled.on != 0 && entry.effect->output_scale.is_of_output &&
                       entry.effect->touch == darkroom::Touch::History;
            });
 }

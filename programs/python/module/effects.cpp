@@ -93,7 +93,7 @@ py::dict effect_of(const EffectInfo& effect) {
     out["doc"] = std::string(effect.doc);
     out["page"] = found == effect.files.end() ? std::string() : std::string(found->text);
     out["needs"] = needs;
-    out["has_second"] = effect.has_second;
+    out["has_second"] = effect.has_second();
     out["has_history"] = effect.pre_roll != nullptr;
     out["is_last_step"] = effect.is_last_step;
     out["parameters"] = rows_of(effect.parameters);

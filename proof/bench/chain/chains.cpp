@@ -155,7 +155,7 @@ Stack depth_of_field_stack(const std::string& resolution) {
 Stack flat_stack(bool keeps_what_is_off) {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {
-        if (effect->flat.documented < 0 || effect->flat.is_of_ui) continue;
+        if (effect->flat.documented < 0 || effect->flat.is_of_ui()) continue;
         // As looks do: of what is off, only pointwise effects without images have a place unless the host keeps them,
         // and what moves coordinates but moves nothing at its defaults has none.
         const bool is_still = effect->touch == Touch::Warp && effect->is_identity != nullptr &&
@@ -192,9 +192,9 @@ Stack single_stack(const EffectInfo& effect) {
 void fill(Composer& composer, const Stack& stack) {
     Handle before = scene_color;
     for (const Step& step : stack) {
-        EntryDesc desc{.source = scene_color, .is_ui = step.effect->is_ui, .enabled = step.is_on};
+        EntryDesc desc{.source = scene_color, .is_ui = step.effect->flat.ui == UiPart::Layer, .enabled = step.is_on};
         if (step.joins_scene) desc.input = scene_color;
-        if (step.effect->has_second && !step.effect->needs.contains(FrameImage::Ui))
+        if (step.effect->has_second() && !step.effect->joins_ui())
             desc.second = step.joins_scene ? before : scene_color;
         std::vector<std::uint32_t> words = step.words;
         for (const ParamInfo& row : step.effect->parameters.rows)
