@@ -216,7 +216,7 @@ const EffectInfo& effect_info(const DepthOfField&) {
         .files = embedded_files("depth_of_field"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .needs = {FrameImage::Depth},
+        .needs = Needs{FrameImage::Depth}.and_perspective(),
         .flat = {.documented = 46, .scene_linear = 48, .starts_on = false},
         .is_in_traced_light = true,
         .build = build,

@@ -20,8 +20,6 @@ struct ThinLens {
 };
 
 [[nodiscard]] inline ThinLens depth_of_field_lens(const DepthOfField& field, const Camera& camera, double height) {
-    // A camera whose rays run side by side has no lens.
-    if (camera.projection[11] == 0.0f) return {0, double{field.focus_distance}};
     const double sensor = double{field.sensor_height} / 1000;
     const double focal = sensor / 2 * std::abs(double{camera.projection[5]});
     // Nothing nearer than the focal length can be sharp.
@@ -44,7 +42,6 @@ struct AutofocusLens {
 };
 
 [[nodiscard]] inline AutofocusLens autofocus_lens(const DepthOfField& field, const Camera& camera, double height) {
-    if (camera.projection[11] == 0.0f) return {};
     const double sensor = double{field.sensor_height} / 1000;
     const double focal = sensor / 2 * std::abs(double{camera.projection[5]});
     return {.strength = focal / double{field.f_stop} / 2 * focal * height / sensor,

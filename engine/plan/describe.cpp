@@ -189,6 +189,9 @@ Plan describe_frame(const Program& program, const graph::Compiled& compiled, con
               .frame_images = frame_images(program),
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
+    for (std::uint32_t i = 0; i < entries.size(); ++i)
+        if (!program.is_left_out[i] && values.lacks_perspective(*entries[i]->info))
+            plan.left_out.push_back(fmt::format("{}: {}", entries[i]->desc.name, lacks_perspective_reason));
     const graph::Extents largest = largest_extents(desc);
     remark_domains(program, values, desc, entries, plan.remarks);
     if (desc.target_color) remark_target(program, values, *desc.target_color, entries, plan.remarks);

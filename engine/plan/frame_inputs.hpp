@@ -132,6 +132,9 @@ static_assert([] {
 [[nodiscard]] ReferenceImage resampled_reference(const ReferenceImage& image, const FrameInput& input,
                                                  std::uint32_t width, std::uint32_t height);
 
+/// Why an effect is left out of a frame whose camera has no perspective (Needs::perspective).
+inline constexpr std::string_view lacks_perspective_reason =
+    "needs perspective, which the frame's camera does not have";
 /// What is needed and not there, as "depth and normals"; empty: nothing.
 template <class IsThere>
 [[nodiscard]] std::string missing_needs(const Needs& needs, const IsThere& is_there) {

@@ -46,10 +46,12 @@ enum class Touch : std::uint8_t {
     History,        ///< reads an earlier frame: passes of its own
 };
 
-/// Images of the frame that an effect reads, as a set. Without one that nothing can stand in for, such as the depth, it
-/// is left out of the plan.
+/// What of the frame an effect needs: images, as a set. Without one that nothing can stand in for, such as the depth,
+/// it is left out of the plan.
 struct Needs {
     std::uint32_t bits = 0;
+    /// Its formula is of rays that meet in an eye: it is left out of frames whose camera has none (orthographic).
+    bool perspective = false;
     constexpr Needs() = default;
     constexpr Needs(std::initializer_list<FrameImage> images) {
         for (const FrameImage image : images) add(image);
@@ -57,6 +59,11 @@ struct Needs {
     constexpr void add(FrameImage image) { bits |= 1u << static_cast<unsigned>(image); }
     [[nodiscard]] constexpr bool contains(FrameImage image) const {
         return (bits >> static_cast<unsigned>(image) & 1) != 0;
+    }
+    [[nodiscard]] constexpr Needs and_perspective() const {
+        Needs out = *this;
+        out.perspective = true;
+        return out;
     }
 };
 

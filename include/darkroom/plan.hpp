@@ -64,10 +64,12 @@ struct PlanState {
 struct Plan {
     VkExtent2D extent{};
     std::vector<PlanPass> passes;
-    std::vector<PlanImage> images;      ///< those of passes that do not run with the present values, too
-    std::vector<std::string> left_out;  ///< "ssao: needs depth, which is not given"
-    std::vector<std::string> remarks;   ///< colour domains and other oddities, one sentence each
-    std::vector<PlanState> states;      ///< behind each entry that is not left out, in order
+    std::vector<PlanImage> images;  ///< those of passes that do not run with the present values, too
+    /// "ssao: needs depth, which the frame does not have"; of Composer::current_plan(), what its frame alone left out,
+    /// too
+    std::vector<std::string> left_out;
+    std::vector<std::string> remarks;  ///< colour domains and other oddities, one sentence each
+    std::vector<PlanState> states;     ///< behind each entry that is not left out, in order
     /// Of the frame, what any pass may read: "color", "depth" and so on, as needs name them.
     std::vector<std::string> frame_images;
     std::uint64_t transient_bytes = 0;  ///< after aliasing

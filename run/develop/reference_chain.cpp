@@ -288,8 +288,10 @@ class Chain {
                                           desc.name, info.name));
         const std::size_t from = input_of(desc, index);
         const ColorState before = states_[from];
-        const bool is_off =
-            !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
+        const bool lacks_perspective = info.needs.perspective && !plan::has_perspective(input_.camera);
+        if (lacks_perspective) left_out_.push_back(fmt::format("{}: {}", desc.name, plan::lacks_perspective_reason));
+        const bool is_off = !desc.enabled || desc.opacity <= 0 || lacks_perspective ||
+                            (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && !info.reference)
             return user_error(fmt::format("stack entry '{}': {} has no reference", desc.name, info.name));
         const bool is_reading = info.reference.is_reading() && is_plain(desc);

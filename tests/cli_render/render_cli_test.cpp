@@ -274,6 +274,37 @@ TEST_F(CliRender, VolumetricLightNeedsShadows) {
     expect_all_differ({{}, {"--volumetric-density", "20"}});
 }
 
+// depth_of_field.md: a thin lens, which rays side by side do not have.
+TEST_F(CliRender, ALensNeedsPerspective) {
+    if (find_effect("depth_of_field") == nullptr) GTEST_SKIP() << "the effect depth_of_field is not in this build";
+    const std::string said =
+        "warning: left out: depth_of_field: needs perspective, which the frame's camera does not have";
+    const std::vector<std::string> lens{"--depth-of-field-focus-distance", "3", "--depth-of-field-f-stop", "0.5",
+                                        "--depth-of-field-enabled",        "on"};
+    Outcome outcome = render(lens);
+    EXPECT_EQ(outcome.err, "");
+    std::string scene(test::yard_scene);
+    write("parallel.scene.toml", scene.replace(scene.find("fov = 50"), 8, "projection = \"orthographic\""));
+    const auto parallel = [&](std::vector<std::string> flags, const std::string& out) {
+        flags.insert(flags.begin(),
+                     {"render", path("parallel.scene.toml"), "-o", path(out), "--size", "48x32", "--samples", "1"});
+        return run(flags);
+    };
+    EXPECT_EQ(parallel({"--frame", path("f.exr"), "--shadow-resolution", "256"}, "plain.png").err, "");
+    outcome = parallel(lens, "lens.png");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    const Picture plain = picture("plain.png"), seen = picture("lens.png");
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i) ASSERT_NEAR(plain.pixels[i], seen.pixels[i], 1.5 / 255) << i;
+    for (const bool is_reference : {false, true}) {
+        std::vector<std::string> develop{"develop", path("f.exr"), "-o", path("d.png")};
+        develop.insert(develop.end(), lens.begin(), lens.end());
+        if (is_reference) develop.emplace_back("--reference");
+        outcome = run(develop);
+        EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+    }
+}
+
 TEST_F(CliRenderFlags, AmountsSwitchTheirEffectOn) {
     using Flags = std::vector<std::string>;
     const auto picture_of = [&](Flags flags, const Flags& more = {}) {

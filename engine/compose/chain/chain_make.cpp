@@ -66,6 +66,7 @@ const Plan& Chain::plan() {
     std::vector<std::uint32_t> now(values_.gates().begin(), values_.gates().end());
     for (std::uint32_t i = 0; i < entries_.size(); ++i) {
         now.push_back(values_.is_on(i) ? 1 : 0);
+        now.push_back(values_.lacks_perspective(*entries_[i]->info) ? 1 : 0);
         now.push_back(std::bit_cast<std::uint32_t>(values_.opacity(i)));
         now.insert(now.end(), values_.words(i), values_.words(i) + entries_[i]->base.size());
     }
@@ -108,7 +109,7 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
 std::vector<plan::Shape> Chain::expected_shapes(std::span<const plan::Entry* const> entries) const {
     const plan::Program& program = program_of();
     const VkExtent2D extent = desc_.compile.max_extent;
-    const Camera camera;
+    const Camera camera = plan::example_camera();
     plan::FrameValues values(program, entries);
     // Twice, for entries that read what a later one made in the frame before.
     for (int frame = 0; frame < 2; ++frame)

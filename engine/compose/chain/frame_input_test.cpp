@@ -119,6 +119,29 @@ TEST_F(ComposeFrameInput, AMaskIsFilteredToTheSizeOfThePicture) {
         }
 }
 
+TEST_F(ComposeFrameInput, WhatNeedsPerspectiveIsLeftOutOfFramesWithout) {
+    constexpr EffectFile lens_files[] = {{"lens.glsl",
+                                          "vec4 lens(vec4 color, Pixel pixel, Lens parameters) {\n"
+                                          "    return vec4(1.0 - color.rgb, color.a);\n}\n"}};
+    const EffectInfo lens{.name = "lens",
+                          .doc = "Turns the picture as a lens does.",
+                          .parameters = {.struct_name = "Lens"},
+                          .files = lens_files,
+                          .needs = Needs{}.and_perspective()};
+    Composer composer(host.device);
+    composer.add(lens, nullptr);
+    EXPECT_TRUE(test::must(composer.compile(host.compile_desc())).left_out.empty());
+    for (const bool has_perspective : {true, false, true}) {
+        Frame frame = host.frame();
+        if (has_perspective) frame.camera.projection[11] = -1;
+        test::must(host.record(composer, frame));
+        EXPECT_EQ(host.read_target().at(3, 2).r, 0.5);
+        EXPECT_EQ(host.read_target().at(3, 2).g, has_perspective ? 0.25 : 0.75);
+        const std::vector<std::string> left_out{"lens: needs perspective, which the frame's camera does not have"};
+        EXPECT_EQ(composer.current_plan()->left_out, has_perspective ? std::vector<std::string>{} : left_out);
+    }
+}
+
 // After a day a float's steps are of 8 ms; kernels get the time since the last full hour.
 TEST_F(ComposeFrameInput, ShadersSeeTheTimeToTheMillisecondAfterADay) {
     const CustomEffect clock =

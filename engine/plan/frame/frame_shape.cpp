@@ -61,10 +61,8 @@ Shape expected_shape(const Program& program, const graph::Compiled& compiled, co
             inputs[i].region.extent = inputs[i].region.image = {extent.width, extent.height};
         }
     }
-    Shape shape = shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
-                           {inputs.data(), pass.inputs.size()});
-    if (pass.asks_rays_meet) shape.flags |= Shape::rays_meet;
-    return shape;
+    return shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
+                    {inputs.data(), pass.inputs.size()});
 }
 
 }  // namespace darkroom::plan

@@ -60,19 +60,22 @@ void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std:
                            const PassContext& context, VkExtent2D target, std::span<const Watched* const> watched) {
     extents_ = extents_of(desc, context.scene_extent, target);
     scene_ = scene_state(desc);
-    const Moment moment = moment_of(context.time, context.camera == nullptr ? Camera{} : *context.camera);
+    const Camera camera = context.camera == nullptr ? Camera{} : *context.camera;
+    const Moment moment = moment_of(context.time, camera);
+    rays_meet_ = plan::rays_meet(camera);
+    has_perspective_ = plan::has_perspective(camera);
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = *entries[i];
         std::uint32_t* const words = words_.data() + first_word_[i];
         const Presence presence = entry.evaluate({words, entry.info->parameters.words()}, moment);
         opacities_[i] = presence.opacity;
-        is_on_[i] = !program.is_left_out[i] && entry.is_on(presence, words) ? 1 : 0;
+        const bool is_left_out = program.is_left_out[i] || lacks_perspective(*entry.info);
+        is_on_[i] = !is_left_out && entry.is_on(presence, words) ? 1 : 0;
         const ColorState before = state_before(program, i);
         works_[i] = work_of(*entry.info, before, words);
         states_[i] = entry.state_after(before, words, is_on(i));
     }
     finish_ = finish_of(last_state(program), desc);
-    rays_meet_ = context.camera != nullptr && plan::rays_meet(*context.camera);
     for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context, watched);
 }
 
@@ -93,9 +96,16 @@ bool FrameValues::is_open(const Program& program, const Gate& gate, const PassCo
     return is_wanted && holds(gate.entries.front(), gate.condition);
 }
 
+Camera example_camera() {
+    Camera out;
+    out.projection[11] = -1;
+    out.projection[15] = 0;
+    return out;
+}
+
 FrameValues example_values(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries) {
     FrameValues values(program, entries);
-    const Camera camera;
+    const Camera camera = example_camera();
     const auto lights = example_lights(desc);
     // Twice, for entries that read what a later one made in the frame before.
     for (int frame = 0; frame < 2; ++frame)

@@ -36,6 +36,10 @@ class FrameValues {
     [[nodiscard]] const Conversion& finish() const { return finish_; }
     /// Of the frame's camera, see glsl.hpp.
     [[nodiscard]] bool rays_meet() const { return rays_meet_; }
+    /// Is it left out of this frame alone? Its camera has no perspective, which the effect needs.
+    [[nodiscard]] bool lacks_perspective(const EffectInfo& info) const {
+        return info.needs.perspective && !has_perspective_;
+    }
     [[nodiscard]] const graph::Extents& extents() const { return extents_; }
     [[nodiscard]] std::span<const bool> gates() const { return {gates_.get(), gate_count_}; }
 
@@ -53,12 +57,14 @@ class FrameValues {
     std::vector<Work> works_;
     ColorState scene_;
     Conversion finish_;
-    bool rays_meet_ = false;
+    bool rays_meet_ = false, has_perspective_ = false;
     graph::Extents extents_;
     std::unique_ptr<bool[]> gates_;
     std::size_t gate_count_ = 0;
 };
 
+/// What is expected of frames before there are any: one with perspective.
+[[nodiscard]] Camera example_camera();
 /// Of a frame that brings all that `desc` promises, and a light to look at.
 [[nodiscard]] FrameValues example_values(const Program& program, const CompileDesc& desc,
                                          std::span<const Entry* const> entries);

@@ -35,6 +35,8 @@ using CameraBlock = std::array<float, 28>;
 [[nodiscard]] CameraBlock camera_block(const Camera& camera);
 /// Do its rays come from one point? frame_ray_flat is 0 then.
 [[nodiscard]] bool rays_meet(const Camera& camera);
+/// Do things look smaller from farther away? Not to an orthographic camera.
+[[nodiscard]] inline bool has_perspective(const Camera& camera) { return camera.projection[11] != 0; }
 inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 
 void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out);

@@ -395,7 +395,7 @@ class Develop {
             return {};
         }
         DARKROOM_TRY(developer_->submit(*composer_, item.input));
-        tell_of_what_is_left_out(i, developer_->plan().left_out);
+        tell_of_what_is_left_out(i, composer_->current_plan()->left_out);
         if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
         return {};
     }

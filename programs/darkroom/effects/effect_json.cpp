@@ -59,6 +59,7 @@ Json effect_json(const EffectInfo& effect) {
     Json needs = Json::array(), rows = Json::array();
     for (const darkroom::plan::FrameInput& input : darkroom::plan::frame_inputs)
         if (effect.needs.contains(input.image)) needs.push_back(input.name);
+    if (effect.needs.perspective) needs.push_back("perspective");
     if (effect.has_second()) needs.push_back("second");
     for (const darkroom::ParamInfo& row : effect.parameters.rows) rows.push_back(json_of(effect, row));
     const bool is_flat = effect.flat.documented >= 0 || effect.flat.scene_linear >= 0;

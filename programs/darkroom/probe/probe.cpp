@@ -103,7 +103,7 @@ class Probe {
         // The picture as develop makes it, with its own kernels and rounding: what is in its file.
         darkroom::Developer developer(*device_, develop_);
         DARKROOM_TRY_VALUE(const darkroom::DevelopedPicture picture, developer.develop(*composer_, input_));
-        warn_of_what_is_left_out(look_, *composer_, developer.plan().left_out);
+        warn_of_what_is_left_out(look_, *composer_, composer_->current_plan()->left_out);
         darkroom::Prober prober(*device_, develop_, static_cast<std::uint32_t>(at.size()));
         DARKROOM_TRY_VALUE(darkroom::Inspection seen, prober.probe(*composer_, input_, at));
         Report out{.extent = input_.extent, .time = input_.time, .frame_index = input_.frame_index, .pixels = {}};

@@ -267,6 +267,13 @@ Plan Runner::plan() {
     return developer_ ? developer_->plan() : Plan();
 }
 
+std::vector<std::string> Runner::left_out() {
+    const py::gil_scoped_release others_run;
+    const std::lock_guard lock(mutex_);
+    const Plan* const plan = composer_ ? composer_->current_plan() : nullptr;
+    return plan == nullptr ? std::vector<std::string>() : plan->left_out;
+}
+
 void add_runner(py::module_& module) {
     py::class_<Device, std::shared_ptr<Device>>(module, "Device")
         .def(py::init(&create_device))
@@ -303,7 +310,7 @@ void add_runner(py::module_& module) {
         .def("finish", &Runner::finish)
         .def("plan_text", [](Runner& runner) { return runner.plan().text(); })
         .def("plan_json", [](Runner& runner) { return runner.plan().json(); })
-        .def("left_out", [](Runner& runner) { return runner.plan().left_out; });
+        .def("left_out", &Runner::left_out);
 }
 
 }  // namespace darkroom::python
