@@ -68,4 +68,25 @@ ReferenceImage resampled_reference(const ReferenceImage& image, const FrameInput
     return out;
 }
 
+namespace {
+
+/// docs/embedding.md quotes how a frame brings them.
+[[maybe_unused]] Frame usage_frame_inputs(const ImageRef& hdr, const ImageRef& depth, const ImageRef& velocity,
+                                          const ImageRef& target, Camera camera, const Light& sun, double seconds,
+                                          std::uint64_t frame_index) {
+    camera.depth = darkroom::DepthKind::Reversed;             // 1 near, 0 far
+    camera.velocity.unit = darkroom::VelocityKind::Unit::Uv;  // from here to where it was; the picture is 1 wide
+    const darkroom::Frame frame{.color = hdr,
+                                .depth = depth,
+                                .velocity = velocity,
+                                .camera = camera,
+                                .lights = {&sun, 1},
+                                .time = seconds,
+                                .frame_index = frame_index,
+                                .target = target};
+    return frame;
+}
+
+}  // namespace
+
 }  // namespace darkroom::plan

@@ -13,6 +13,7 @@ COMPILED = ("README.md", "docs/embedding.md", "docs/interface.md", "docs/looks.m
 QUOTED = (("docs/embedding.md", "const auto device = darkroom::Device::adopt", "engine/gpu/device/adopt.cpp"),
           ("docs/embedding.md", "auto plan = composer.compile({.max_extent = {3840", "engine/compose/composer_run.cpp"),
           ("docs/embedding.md", "if (auto taken_back = composer.abandon()", "engine/compose/composer_run.cpp"),
+          ("docs/embedding.md", "camera.depth = darkroom::DepthKind", "engine/plan/frame_inputs.cpp"),
           ("docs/embedding.md", "const auto duotone = darkroom::CustomEffect::load", "engine/custom/custom_effect.cpp"),
           ("docs/c.md", "DarkroomDevice device = NULL", "engine/c/usage.c"),
           ("docs/c.md", "DarkroomParameter intensity", "engine/c/usage.c"),
@@ -65,8 +66,9 @@ extern darkroom::LogSink print;
 extern const darkroom::Plan* plan;
 extern darkroom::Handle bloom, encoded, warp;
 extern darkroom::ImageRef target, hdr, interface, pixel, view, scene_color, mask, exposure_texel,
-    color_before_glass_and_particles;
+    color_before_glass_and_particles, depth, velocity;
 extern darkroom::Camera camera;
+extern darkroom::Light sun;
 extern darkroom::CompileDesc desc, compile_desc;
 extern darkroom::Frame frame;
 extern darkroom::Look look;
