@@ -6,6 +6,8 @@ package("darkroom")
     set_license("MIT")
     set_sourcedir(path.join(os.scriptdir(), "..", ".."))
     add_links("darkroom_cpp")
+    -- So that a host finds it where it was built.
+    add_configs("shared", {description = "Build shared library.", default = true, type = "boolean", readonly = true})
     on_install(function (package)
         import("package.tools.cmake").install(package, {
             "-DDARKROOM_APPS=OFF", "-DDARKROOM_LOOKS=OFF", "-DDARKROOM_SCRIPT=OFF", "-DDARKROOM_TESTS=OFF",
