@@ -96,7 +96,6 @@ void Screen::draw(const Input& input) {
                      .inspection = input.inspection,
                      .watch_state = input.view.watch_state(),
                      .extent = input.extent,
-                     .divisor = input.divisor,
                      .lines = input.lines,
                      .camera = input.camera,
                      .frames_a_second = input.frames_a_second,

@@ -27,9 +27,8 @@ class Screen {
         LookView& view;
         darkroom::ImageRef picture, compared, watched;  ///< those that are to be shown
         darkroom::window::PaneTransfer transfer{}, compared_transfer{};
-        VkExtent2D extent{};        ///< of the picture
-        std::uint32_t divisor = 1;  ///< it has so many times fewer pixels each way now
-        double lines = 1;           ///< of the scene to those of the picture, which is made of them
+        VkExtent2D extent{};  ///< of the picture
+        double lines = 1;     ///< of what is drawn now to those of the picture
         VkExtent2D window{};
         float scale = 1;
         double passed = 0;        ///< seconds since the last frame

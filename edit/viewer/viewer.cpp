@@ -66,7 +66,8 @@ Result<> Viewer::open() {
     is_post_on_ = !job_.is_off;
     is_paused_ = job_.is_paused;
     draw_ = job_.scene_desc.render.draw;
-    if (job_.frame_time) lines_.emplace(std::vector(steps_of_lines.begin(), steps_of_lines.end()), *job_.frame_time);
+    if (job_.frame_time)
+        pace_ = ScaleChoice(std::vector(steps_of_lines.begin(), steps_of_lines.end()), *job_.frame_time);
     time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
     previous_time_ = std::max(0.0, time_ - job_.step);
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
@@ -110,7 +111,7 @@ Result<LookView*> Viewer::view(Side side) {
                                                                     .kernels = job_.kernels,
                                                                     .fuse = job_.fuse,
                                                                     .makes_light = is_high_range(),
-                                                                    .enlarges = lines_.has_value(),
+                                                                    .enlarges = job_.frame_time.has_value(),
                                                                     .keeps = job_.timeline.entries()});
     DARKROOM_TRY(made->show(look_of(side)));
     view = std::move(made);
@@ -169,7 +170,7 @@ LiveMoment Viewer::moment() const {
         .draw = draw_,
         .jitter = jitter(),
         .aspect = static_cast<float>(full_extent_.width) / static_cast<float>(std::max(full_extent_.height, 1U)),
-        .divisor = divisor_};
+        .scale = scale_};
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
@@ -188,6 +189,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
     const VkExtent2D wanted = picture_extent();
     if (scene_ != nullptr && shown_frames_ > 0) {
         if (job_.turns && !is_paused_) camera_->turn(static_cast<float>(20 * delta_time_), scene_->snapshot());
+        const darkroom::scene::OrbitOverride before = camera_->orbit(scene_->snapshot());
         camera_->move(*window_,
                       {.delta_time = delta_time_,
                        .picture = wanted,
@@ -195,6 +197,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
                        .has_mouse = !gui_->wants_mouse() && !screen_.picture().is_busy(),
                        .ground = ground_ ? &*ground_ : nullptr},
                       scene_->snapshot());
+        is_led_ = !is_same_place(camera_->orbit(scene_->snapshot()), before);
     }
     // The first frame, too, has what the game says and controllers set.
     const bool is_menu_open = screen_.has_console() || gui_->has_popup();
@@ -241,7 +244,6 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .transfer = left.transfer,
                   .compared_transfer = right.transfer,
                   .extent = full_extent_,
-                  .divisor = divisor_,
                   .lines = scale_,
                   .window = frame.extent,
                   .scale = window_->scale(),

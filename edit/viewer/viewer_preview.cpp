@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much of a frame is made anew: of a picture that moves fewer pixels, of one that stands nothing.
+// How much of a frame is made anew: of a picture that a hand moves fewer pixels, of one that stands nothing.
 #include <cmath>
 
 #include "gpu/device/context.hpp"
@@ -26,47 +26,42 @@ bool Viewer::is_looked_into() const {
     return panels->pixel() || (look && panels->watched(look->composer().current_plan()) != nullptr);
 }
 
+// What a hand moves may be drawn smaller; what time alone moves has all pixels, or what a frame time leaves of them.
 void Viewer::choose_scale() {
     const std::chrono::duration<double> still = last_turn_ - moved_at_;
     const bool is_over = still > to_rest + std::chrono::duration<double>(has_rested_ ? 0 : passed_);
-    if (source_->is_another(moment()) || developed_version_ != document_->version()) {
+    const bool is_running = is_time_running();
+    if (is_led_ || developed_version_ != document_->version() || (!is_running && source_->is_another(moment()))) {
         moves_ = has_rested_ && is_over ? 1 : moves_ + 1;
         moved_at_ = last_turn_;
     } else if (is_over) {
         moves_ = 0;
     }
-    const auto divisor_of = [](const ScaleChoice& choice) {
-        return static_cast<std::uint32_t>(std::lround(1 / choice.scale()));
-    };
-    if (divisor_ == divisor_of(preview_) && has_developed_ && !has_rested_) preview_.add(passed_);
-    // A single step, such as a switch, is shown as it is.
-    const bool has_lines = lines_ && scene_ != nullptr;
-    const bool is_moving = moves_ > 1 || (has_lines && gathers() && !is_paused_);
+    // A single step, such as a switch, is shown as it is where nothing else is drawn before the next.
+    const bool is_moving = moves_ > (is_running ? 0U : 1U) || (job_.frame_time && gathers() && is_running);
     const bool is_reduced = is_moving && !job_.is_full_size && !is_fixed() && !is_looked_into();
-    divisor_ = is_reduced && !has_lines ? divisor_of(preview_) : 1;
-    scale_ = is_reduced && has_lines ? lines_->scale() : 1;
+    scale_ = is_reduced ? pace_.scale() : 1;
 }
 
 Result<> Viewer::begin_timing(const darkroom::window::PresentFrame& frame) {
-    if (!lines_) return {};
     if (timers_.context == nullptr) {
         DARKROOM_TRY_VALUE(timers_, darkroom::gpu::Timers::create(device_->context(), frames_in_flight, 2));
     }
     // A device without timestamps: from one frame to the next.
     double milliseconds = passed_ * 1000;
+    const bool has_none = timers_.pools.empty();
     const double timed = std::exchange(timed_[frame.slot], 0);
-    const bool is_known = timers_.pools.empty() ? has_developed_ && !has_rested_
-                                                : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
-    if (is_known && (timers_.pools.empty() ? scale_ : timed) == lines_->scale()) lines_->add(milliseconds / 1000);
+    const bool is_known =
+        has_none ? has_developed_ && !has_rested_ : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
+    if (is_known && (has_none ? scale_ : timed) == pace_.scale()) pace_.add(milliseconds / 1000);
     timers_.begin(frame.commands, frame.slot);
     timers_.mark(frame.commands, frame.slot, 0);
     return {};
 }
 
 void Viewer::end_timing(const darkroom::window::PresentFrame& frame) {
-    if (!lines_) return;
     timers_.mark(frame.commands, frame.slot, 1);
-    if (scene_ != nullptr && !source_->is_kept()) timed_[frame.slot] = scale_;
+    if (has_developed_) timed_[frame.slot] = scale_;
 }
 
 // One picture alone is none of several, and what is compared with others stands still beside them.
@@ -82,7 +77,7 @@ darkroom::render::FrameJitter Viewer::jitter() const {
     return out;
 }
 
-bool Viewer::has_come_to_rest() const { return (divisor_ > 1 || scale_ < 1) && Clock::now() - moved_at_ > to_rest; }
+bool Viewer::has_come_to_rest() const { return scale_ < 1 && Clock::now() - moved_at_ > to_rest; }
 
 bool Viewer::is_picture_kept() const {
     return !is_fixed() && !is_time_running() && !is_looked_into() && !is_cut_ && source_->is_kept() &&

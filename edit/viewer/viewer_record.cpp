@@ -41,8 +41,8 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
         extent = min_of(extent, views_[side]->most());
     }
     full_extent_ = extent;
-    made_extent_ = {(extent.width + divisor_ - 1) / divisor_, (extent.height + divisor_ - 1) / divisor_};
-    const VkExtent2D drawn = scaled(made_extent_, scale_);
+    const VkExtent2D drawn = scaled(full_extent_, scale_);
+    made_extent_ = job_.frame_time ? full_extent_ : drawn;
     const LiveMoment now = moment();
     bool must_wait = source_->must_wait(now, drawn) || interface_->must_wait(full_extent_, made_extent_);
     for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(made_extent_));
@@ -94,8 +94,8 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     DARKROOM_TRY_VALUE(LookView* const found, view(side));
     LookView& of = *found;
     if (of.most().width == 0) DARKROOM_TRY(of.fit(*source_, full_extent_, interface_->format()));
-    // Only frames of fewer lines have another size than their picture.
-    const VkExtent2D extent = scale_ < 1 ? made_extent_ : frame.color.used_region().extent;
+    // Only under a frame time frames have another size than their picture.
+    const VkExtent2D extent = job_.frame_time ? made_extent_ : frame.color.used_region().extent;
     DARKROOM_TRY(of.resize(extent));
     if (is_fixed()) of.composer().wait_for_kernels();
     has_developed_ = true;

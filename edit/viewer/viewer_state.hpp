@@ -216,16 +216,16 @@ class Viewer {
     std::uint32_t frames_due_ = 0;
     std::uint64_t drawn_version_ = 0;  ///< of the document
     bool is_resting_ = false, is_echo_ = false, has_measured_ = false;
-    ScaleChoice preview_{{1, 0.5, 0.25}, longest_preview};
-    std::optional<ScaleChoice> lines_;       ///< where somebody said how long the device may take for a frame
-    std::uint32_t divisor_ = 1, moves_ = 0;  ///< of the last frame; frames that were another, one behind the other
-    double scale_ = 1;                       ///< of the sides of what is drawn to those of the picture
-    VkExtent2D full_extent_{};               ///< of the picture, were it not divided
-    VkExtent2D made_extent_{};               ///< of the picture that is made
-    darkroom::gpu::Timers timers_;           ///< of whole frames
+    ScaleChoice pace_{{1, 0.5, 0.25}, longest_preview};
+    std::uint32_t moves_ = 0;                          ///< frames that were moved by hand, one behind the other
+    bool is_led_ = false;                              ///< a hand has just moved the camera
+    double scale_ = 1;                                 ///< of the sides of what is drawn to those of the whole picture
+    VkExtent2D full_extent_{};                         ///< of the whole picture
+    VkExtent2D made_extent_{};                         ///< of the picture that is made
+    darkroom::gpu::Timers timers_;                     ///< of whole frames
     std::array<double, frames_in_flight> timed_{};     ///< scales of frames under way; 0: the frame says nothing
     std::optional<std::array<float, 2>> last_jitter_;  ///< of the scene's frame before
-    Clock::time_point moved_at_{};                     ///< the picture was another
+    Clock::time_point moved_at_{};                     ///< a hand made the picture another
     std::uint64_t developed_version_ = 0;              ///< of the document
     bool has_rested_ = true, has_developed_ = false;   ///< before the frame that comes; since then a look was recorded
     double passed_ = 0;                                ///< seconds since the frame before

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "viewer/scale_choice.hpp"
-#include "viewer/source/reduced_frame.hpp"
+#include "viewer/source/small_frame.hpp"
 
 namespace app {
 namespace {
@@ -117,7 +117,7 @@ TEST(ScaleChoice, FollowsALoadAndNoNoise) {
     EXPECT_EQ(after(choice, 200, under(1)), 1);
 }
 
-TEST(ReducedFrame, HasThePixelsInTheMiddleAndShorterMotion) {
+TEST(SmallFrame, HasThePixelsInTheMiddleAndShorterMotion) {
     constexpr std::uint32_t width = 5, height = 3;
     std::vector<float> depth, velocity;
     std::vector<std::uint16_t> color;
@@ -127,40 +127,58 @@ TEST(ReducedFrame, HasThePixelsInTheMiddleAndShorterMotion) {
             velocity.insert(velocity.end(), {static_cast<float>(x) / 3, -4});
             for (int i = 0; i < 4; ++i) color.push_back(static_cast<std::uint16_t>(100 * y + x));
         }
-    const std::vector<float> exposure{3};
-    darkroom::DevelopInput input{.extent = {width, height}, .depth = depth, .velocity = velocity, .exposure = exposure};
+    darkroom::DevelopInput input{.extent = {width, height}, .depth = depth, .velocity = velocity};
     input.color_halves = color;
-    const ReducedFrame reduced(input, 2);
-    EXPECT_EQ(reduced.input().extent.width, 3U);
-    EXPECT_EQ(reduced.input().extent.height, 2U);
-    const darkroom::UploadLayers& layers = reduced.layers();
-    const std::vector<float> expected{11, 13, 14, 21, 23, 24};
+    const std::vector<float> exposure{0.25F};
+    input.exposure = exposure;
+    const SmallFrame small(input, {3, 2});
+    EXPECT_EQ(small.input().extent.width, 3U);
+    EXPECT_EQ(small.input().extent.height, 2U);
+    const darkroom::UploadLayers& layers = small.layers();
+    const std::vector<float> expected{0, 2, 4, 20, 22, 24};
     EXPECT_TRUE(std::ranges::equal(layers[1].values, expected));
-    EXPECT_EQ(layers[0].halves.size(), 6U * 4);
-    EXPECT_EQ(layers[0].halves[4], 103);
-    EXPECT_EQ(layers[0].format, darkroom::layers_of(input)[0].format);
-    for (const darkroom::UploadLayer& layer : layers) {
-        const std::size_t pixels = std::size_t{layer.extent.width} * layer.extent.height;
-        EXPECT_TRUE(layer.values.empty() || layer.values.size() == pixels * layer.given) << layer.name;
-        EXPECT_TRUE(layer.halves.empty() || layer.halves.size() == pixels * layer.given_halves ||
-                    layer.given_halves == 0)
-            << layer.name;
+    for (const std::size_t i : {0U, 1U, 3U}) {
+        EXPECT_EQ(layers[i].extent.width, 3U) << layers[i].name;
+        EXPECT_EQ(layers[i].extent.height, 2U) << layers[i].name;
     }
-    EXPECT_TRUE(std::ranges::equal(layers[6].values, exposure));
-    EXPECT_FLOAT_EQ(layers[3].values[0], 1.0F / 6);
-    EXPECT_EQ(layers[3].values[1], -2);
+    EXPECT_EQ(layers[6].extent.width, 1U);
+    EXPECT_TRUE(std::ranges::equal(layers[6].values, exposure)) << "one texel for the whole frame";
+    EXPECT_EQ(layers[0].halves.size(), 6U * 4);
+    EXPECT_EQ(layers[0].halves[4], 2);
+    EXPECT_EQ(layers[0].format, darkroom::layers_of(input)[0].format);
+    EXPECT_FLOAT_EQ(layers[3].values[2], 2.0F / 3 * 3 / 5);
+    EXPECT_FLOAT_EQ(layers[3].values[1], -4.0F * 2 / 3);
 }
 
-TEST(ReducedFrame, HalvesOfMotionAreHalved) {
-    // 1, -2^-14, the smallest number, infinity.
-    const std::vector<std::uint16_t> velocity{0x3c00, 0x8400, 0x3c00, 0x8400, 0x0001, 0x7c00, 0x0001, 0x7c00};
-    const std::vector<std::uint16_t> color(16);
-    darkroom::DevelopInput input{.extent = {4, 1}};
+TEST(SmallFrame, MotionThatIsHalfStaysHalf) {
+    // 1, -2^-14, twice the smallest number, infinity.
+    const std::vector<std::uint16_t> velocity{0x3c00, 0x8400, 0x3c00, 0x8400, 0x0002, 0x7c00, 0x0002, 0x7c00};
+    const std::vector<std::uint16_t> color(32);
+    darkroom::DevelopInput input{.extent = {4, 2}};
     input.color_halves = color;
-    input.velocity_halves = velocity;
-    const ReducedFrame half(input, 2), quarter(input, 4);
-    EXPECT_TRUE(std::ranges::equal(half.layers()[3].halves, std::vector<std::uint16_t>{0x3800, 0x8200, 0, 0x7c00}));
-    EXPECT_TRUE(std::ranges::equal(quarter.layers()[3].halves, std::vector<std::uint16_t>{0, 0x7c00}));
+    std::vector<std::uint16_t> rows = velocity;
+    rows.insert(rows.end(), velocity.begin(), velocity.end());
+    input.velocity_halves = rows;
+    const SmallFrame half(input, {2, 1}), whole(input, {4, 2});
+    EXPECT_TRUE(
+        std::ranges::equal(half.layers()[3].halves, std::vector<std::uint16_t>{0x3800, 0x8200, 0x0001, 0x7c00}));
+    EXPECT_TRUE(std::ranges::equal(whole.layers()[3].halves, rows));
+    // Floats that are all halves, one of which is none when it is shorter.
+    const std::vector<float> values{0x3p-24F, 1, 0x3p-24F, 1, 0x3p-24F, 1, 0x3p-24F, 1};
+    darkroom::DevelopInput floats{.extent = {4, 1}, .velocity = values};
+    floats.color_halves = std::span(color).first(16);
+    const SmallFrame one(floats, {1, 1});
+    EXPECT_EQ(one.layers()[3].format, darkroom::layers_of(floats)[3].format);
+    EXPECT_TRUE(std::ranges::equal(one.layers()[3].halves, std::vector<std::uint16_t>{0x0001, 0x3c00}));
+}
+
+TEST(SmallFrame, CodesAreOfTheSamePixels) {
+    const std::vector<std::uint8_t> codes{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    darkroom::DevelopInput input{.extent = {2, 2}, .color_channels = 3};
+    input.color_codes = codes;
+    const SmallFrame small(input, {1, 1});
+    EXPECT_TRUE(std::ranges::equal(small.layers()[0].codes, std::vector<std::uint8_t>{10, 11, 12}));
+    EXPECT_TRUE(std::ranges::equal(small.input().color_codes, std::vector<std::uint8_t>{10, 11, 12}));
 }
 
 }  // namespace

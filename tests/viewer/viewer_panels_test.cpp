@@ -3,6 +3,7 @@
 // that have fewer pixels while they move.
 #include <fmt/format.h>
 
+#include "image/compare/compare.hpp"
 #include "image/frame/frame_file.hpp"
 #include "tests/places.hpp"
 #include "viewer_support.hpp"
@@ -87,46 +88,98 @@ TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
 
 class CliViewerSpeed : public ViewerFixture {
   protected:
-    [[nodiscard]] std::string divisor() const {
+    /// The picture's size, and that of what is drawn for it.
+    [[nodiscard]] std::string sizes() const {
         const std::string text = ask("frames", "frames: ");
         return text.substr(text.find(", ") + 2);
     }
+    /// Drags the first slider of an effect to and fro until less is drawn than is shown, and gives what the display
+    /// shows then.
+    [[nodiscard]] Picture while_dragged(const std::string& effect, const std::string& slider) const {
+        click("stack/" + effect);
+        const auto [left, top, right, bottom] = place(slider);
+        const std::array<int, 4> picture = place("panel/Picture");
+        const std::string whole = sizes();
+        const auto move_to = [&](int x) {
+            EXPECT_EQ(shell(fmt::format("xdotool mousemove --window {} {} {}", window(), x, (top + bottom) / 2)), 0);
+        };
+        move_to((left + right) / 2);
+        EXPECT_EQ(shell("xdotool mousedown 1"), 0);
+        Picture out;
+        int step = 0;
+        EXPECT_TRUE(wait_until(
+            [&] {
+                move_to((left + right) / 2 + step++ % 3);
+                if (sizes() == whole) return false;
+                out = seen(picture);
+                move_to((left + right) / 2 + step++ % 3);
+                return sizes() != whole;
+            },
+            60))
+            << whole;
+        EXPECT_EQ(shell("xdotool mouseup 1"), 0);
+        EXPECT_TRUE(wait_until([&] { return sizes() == whole; }, 60)) << whole;
+        return out;
+    }
+    /// Of what stands in the window, by the mean of FLIP.
+    [[nodiscard]] double off(const Picture& moved) const {
+        (void)ask("frames", "frames: ");
+        const Result<Comparison> result = compare(seen(place("panel/Picture")), moved);
+        EXPECT_TRUE(result) << result.error().text;
+        return result ? result->flip_mean : 1;
+    }
+    std::string heavy_look() const {
+        return write("heavy.toml",
+                     "[[stack]]\neffect = \"ssao\"\n[[stack]]\neffect = \"bloom\"\n[[stack]]\neffect = "
+                     "\"tonemap\"\n[[stack]]\neffect = \"encode\"\n");
+    }
+    void store(const std::string& frame, const std::string& time = "0") const {
+        ASSERT_EQ(run({"render", scenes_folder + "dungeon.scene.toml", "--size", "1280x720", "--time", time, "-o",
+                       path("r.png"), "--frame", path(frame)})
+                      .code,
+                  0);
+    }
 };
 
-TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
-    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720"});
-    EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 2" || divisor() == "1280x720 / 4"; }, 60))
-        << divisor();
-    EXPECT_EQ(shot().width, 1280U);
-    press("p", "P pause: on");
-    EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 1"; }, 60)) << divisor();
-    leave();
-    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
-    std::this_thread::sleep_for(std::chrono::seconds(5));
-    EXPECT_EQ(divisor(), "1280x720 / 1");
+TEST_F(CliViewerSpeed, AStoredFrameKeepsItsPictureWhileASliderIsDragged) {
+    store("frame.exr");
+    start({"edit", path("frame.exr"), "--look", heavy_look(), "--size", "1600x900"});
+    EXPECT_FALSE(shot().empty());
+    const Picture moved = while_dragged("bloom", "bloom.intensity");
+    EXPECT_LT(off(moved), 0.1);
+    press("ctrl+s", "saved heavy.toml");
     leave();
 }
 
-// All pixels are alike, whatever a blur makes of them.
-TEST_F(CliViewerSpeed, StoredFramesThatMoveAreSeenWhole) {
-    constexpr std::uint32_t width = 1600, height = 900;
-    FrameFile frame{.color = Picture(width, height), .velocity = Plane<2>(width, height), .exposure = 1.0F};
-    for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = i % 4 == 3 ? 1.0F : 0.5F;
-    for (const char* const name : {"f.0001.exr", "f.0002.exr", "f.0003.exr", "f.0004.exr", "f.0005.exr"})
-        ASSERT_TRUE(write_frame(path(name), frame));
-    std::string look;
-    for (int i = 0; i < 8; ++i) look += "[[stack]]\neffect = \"gaussian_blur\"\nradius = 24\n\n";
-    start({"play", path("f.####.exr"), "--fps", "24", "--look",
-           write("blurred.toml", look + "[[stack]]\neffect = \"encode\"\n"), "--size", "1600x900"});
-    ASSERT_TRUE(wait_until([&] { return divisor() == "1600x900 / 2" || divisor() == "1600x900 / 4"; }, 60))
-        << divisor();
-    for (int i = 0; i < 5; ++i) {
-        // Below the pointer, which is in the middle.
-        const Screen seen = screen();
-        for (int y = 600; y < 700; ++y)
-            for (int x = 700; x < 1200; ++x)
-                for (const int code : seen.at(x, y)) ASSERT_NEAR(code, 188, 1) << x << ", " << y;
-    }
+TEST_F(CliViewerSpeed, FramesOfASequenceKeepTheirPictureWhileASliderIsDragged) {
+    for (const char* const number : {"0", "1"}) store(fmt::format("shot.000{}.exr", number), number);
+    start({"edit", path("shot.####.exr"), "--look", heavy_look(), "--fps", "24", "--size", "1600x900", "--paused"});
+    EXPECT_FALSE(shot().empty());
+    press("period");
+    EXPECT_FALSE(shot().empty());
+    const Picture moved = while_dragged("bloom", "bloom.intensity");
+    EXPECT_LT(off(moved), 0.1);
+    press("ctrl+s", "saved heavy.toml");
+    leave();
+}
+
+TEST_F(CliViewerSpeed, WhatAHandMovesHasFewerPixelsAndWhatIsStoredAll) {
+    const std::string whole = "1280x720 from 1280x720";
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720"});
+    ASSERT_EQ(shell("xdotool keydown w"), 0);
+    EXPECT_TRUE(wait_until([&] { return sizes() != whole; }, 60)) << sizes();
+    EXPECT_EQ(shot().width, 1280U);
+    ASSERT_EQ(shell("xdotool keyup w"), 0);
+    // The time runs on.
+    EXPECT_TRUE(wait_until([&] { return sizes() == whole; }, 60)) << sizes();
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_EQ(sizes(), whole);
+    leave();
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
+    ASSERT_EQ(shell("xdotool keydown w"), 0);
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    EXPECT_EQ(sizes(), whole);
+    ASSERT_EQ(shell("xdotool keyup w"), 0);
     leave();
 }
 
@@ -140,7 +193,7 @@ TEST_F(CliViewerSpeed, AFrameTimeDrawsASceneWithFewerLinesOfThePicture) {
         start(flags);
     };
     begin({"--frame-time", "0.5"});
-    EXPECT_TRUE(wait_until([&] { return divisor() == "640x360 / 1 from 213x120"; }, 60)) << divisor();
+    EXPECT_TRUE(wait_until([&] { return sizes() == "640x360 from 213x120"; }, 60)) << sizes();
     // What is stored has all lines, from the frame's own place within the pixel.
     EXPECT_EQ(shot().width, 640U);
     press("ctrl+c", "stored frame-0001.exr");
@@ -150,11 +203,11 @@ TEST_F(CliViewerSpeed, AFrameTimeDrawsASceneWithFewerLinesOfThePicture) {
     ASSERT_TRUE(frame->camera.jitter);
     EXPECT_NE(*frame->camera.jitter, frame->camera.previous_jitter);
     press("p", "P pause: on");
-    EXPECT_TRUE(wait_until([&] { return divisor() == "640x360 / 1 from 640x360"; }, 60)) << divisor();
+    EXPECT_TRUE(wait_until([&] { return sizes() == "640x360 from 640x360"; }, 60)) << sizes();
     leave();
     begin({"--frame-time", "1000"});
     std::this_thread::sleep_for(std::chrono::seconds(5));
-    EXPECT_EQ(divisor(), "640x360 / 1 from 640x360");
+    EXPECT_EQ(sizes(), "640x360 from 640x360");
     leave();
 
     write("gathers.toml", "[[stack]]\neffect = \"tonemap\"\n\n[[stack]]\neffect = \"encode\"\n");

@@ -201,25 +201,31 @@ class ViewerFixture : public CliFixture {
         const std::size_t at = text.rfind("stored ") + 7;
         return picture(text.substr(at, text.find('\n', at) - at));
     }
-    /// What the display shows, as Xvfb's option -fbdir writes it: a window dump of X11 (XWDFile.h).
-    struct Screen {
-        std::string bytes;
-        [[nodiscard]] std::uint32_t number(std::size_t index) const {
+    /// What the display shows within these sides, as somebody in front of it sees it. It may be between two frames.
+    [[nodiscard]] Picture seen(const std::array<int, 4>& sides) const {
+        const std::string file = content(path("Xvfb_screen0"));
+        const auto number = [&](std::size_t at) {
             std::uint32_t out = 0;
-            for (std::size_t i = 0; i < 4; ++i) out = out << 8U | static_cast<unsigned char>(bytes.at(4 * index + i));
+            for (std::size_t i = 0; i < 4; ++i) out = out << 8U | static_cast<std::uint8_t>(file[4 * at + i]);
             return out;
-        }
-        /// Red, green, blue.
-        [[nodiscard]] std::array<int, 3> at(int x, int y) const {
-            constexpr std::size_t header_size = 0, bytes_per_line = 12, colors = 19, bytes_a_color = 12;
-            const std::size_t pixel = number(header_size) + number(colors) * bytes_a_color +
-                                      number(bytes_per_line) * static_cast<std::size_t>(y) +
-                                      4 * static_cast<std::size_t>(x);
-            const auto code = [&](std::size_t i) { return int{static_cast<unsigned char>(bytes.at(pixel + i))}; };
-            return {code(2), code(1), code(0)};
-        }
-    };
-    [[nodiscard]] Screen screen() const { return {content(path("Xvfb_screen0"))}; }
+        };
+        // The header of XWD: where pixels begin, bytes a row. The window's place is that of its first pixel.
+        const std::size_t begin = number(0) + std::size_t{12} * number(19), row = number(12);
+        std::istringstream place(
+            answer("xdotool getwindowgeometry --shell " + window_ + " | sed -n 's/^[XY]=//p' | xargs"));
+        int left = 0, top = 0;
+        place >> left >> top;
+        Picture out(static_cast<std::uint32_t>(sides[2] - sides[0]), static_cast<std::uint32_t>(sides[3] - sides[1]));
+        float* to = out.pixels.data();
+        for (int y = top + sides[1]; y < top + sides[3]; ++y)
+            for (int x = left + sides[0]; x < left + sides[2]; ++x) {
+                const std::size_t at = begin + static_cast<std::size_t>(y) * row + 4 * static_cast<std::size_t>(x);
+                for (const std::size_t channel : {2U, 1U, 0U})
+                    *to++ = static_cast<float>(static_cast<std::uint8_t>(file[at + channel])) / 255;
+                *to++ = 1;
+            }
+        return out;
+    }
     /// Ends the program as its window's frame does; the validation layer has said nothing.
     void leave() {
         press("alt+F4");

@@ -248,8 +248,8 @@ void Viewer::run_command(const std::string& command) {
     if (command == "frames") {
         const auto [width, height] = full_extent_;
         const VkExtent2D drawn = source_->frame().color.extent;
-        return print(fmt::format("frames: {}, {}x{} / {}{}", shown_frames_, width, height, divisor_,
-                                 lines_ ? fmt::format(" from {}x{}", drawn.width, drawn.height) : ""));
+        return print(
+            fmt::format("frames: {}, {}x{} from {}x{}", shown_frames_, width, height, drawn.width, drawn.height));
     }
     if (command == "messages") {
         const darkroom::panels::Messages& messages = screen_.messages();

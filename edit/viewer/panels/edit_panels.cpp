@@ -192,8 +192,7 @@ void EditPanels::draw_status(const Input& input, const PictureView& picture) {
     std::vector<std::string> parts;
     parts.push_back(input.frames_a_second > 0 ? fmt::format("{:.3g} frames/s", input.frames_a_second) : "at rest");
     if (!times_.frames().empty()) parts.push_back(fmt::format("GPU {:.2f} ms", static_cast<double>(gpu.median)));
-    parts.push_back(fmt::format("{}x{}{}{}", input.extent.width, input.extent.height,
-                                input.divisor == 1 ? "" : fmt::format(" / {} while it moves", input.divisor),
+    parts.push_back(fmt::format("{}x{}{}", input.extent.width, input.extent.height,
                                 input.lines == 1 ? "" : fmt::format(" from {:.0f} % of its lines", 100 * input.lines)));
     if (picture.zoom() > 0) parts.push_back(fmt::format("{:.0f} %", static_cast<double>(picture.zoom() * 100)));
     if (!input.camera.empty()) parts.emplace_back(input.camera);

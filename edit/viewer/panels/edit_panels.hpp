@@ -48,8 +48,7 @@ class EditPanels {
         const darkroom::Inspection* inspection = nullptr;  ///< of the pixel that was chosen
         darkroom::WatchState watch_state = darkroom::WatchState::NotInPlan;
         VkExtent2D extent{};              ///< of the picture
-        std::uint32_t divisor = 1;        ///< it has so many times fewer pixels each way now
-        double lines = 1;                 ///< of the scene to those of the picture, which is made of them
+        double lines = 1;                 ///< of what is drawn now to those of the picture
         std::string_view camera;          ///< how it moves; empty: there is none
         double frames_a_second = 0;       ///< 0: nothing changes
         std::string_view last_line = {};  ///< that was said

@@ -10,6 +10,7 @@
 #include "gpu/device/context.hpp"
 #include "gpu/resource/barriers.hpp"
 #include "image/frame/sequence.hpp"
+#include "programs/darkroom/run/jitter.hpp"
 
 namespace app {
 
@@ -128,15 +129,15 @@ bool FrameSource::is_another(const LiveMoment& moment) const {
 
 // One that is on its way may be there when this has returned.
 bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
-    if (is_new_ || moment.divisor != divisor_) return true;
+    if (is_new_ || moment.scale != scale_) return true;
     const std::lock_guard lock(mutex_);
     const std::size_t number = std::min(moment.number, files_.size() - 1);
     return number != shown_->number && !failed_.contains(number);
 }
 
 Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
-    const std::uint32_t divisor_before = std::exchange(divisor_, moment.divisor);
-    bool is_another = is_new_ || divisor_ != divisor_before;
+    const double scale_before = std::exchange(scale_, moment.scale);
+    bool is_another = is_new_ || scale_ != scale_before;
     {
         const std::lock_guard lock(mutex_);
         const std::size_t number = std::min(moment.number, files_.size() - 1);
@@ -148,18 +149,16 @@ Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
         const std::shared_ptr<Decoded> found = find(wanted_);
         if (found != nullptr && found != shown_) {
             is_cut_ = found->number != shown_->number + 1;
-            const auto [width, height] = shown_->input.extent;
-            if (found->input.extent.width != width || found->input.extent.height != height) upload_.reset();
             shown_ = found;
             is_another = true;
         }
     }
     if (!is_another) return {};
     is_new_ = true;
-    reduced_.reset();
-    if (divisor_ > 1) reduced_.emplace(shown_->input, divisor_);
+    small_.reset();
+    if (scale_ < 1) small_.emplace(shown_->input, scaled(shown_->input.extent, scale_));
     upload_.reset();
-    return upload_.prepare(device_.context(), input(), reduced_ ? reduced_->layers() : layers_of(shown_->input));
+    return upload_.prepare(device_.context(), input(), small_ ? small_->layers() : layers_of(shown_->input));
 }
 
 // Images are left where every recording may find them, and leave them.

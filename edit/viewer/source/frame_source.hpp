@@ -14,7 +14,7 @@
 #include "image/frame/sequence.hpp"
 #include "live_source.hpp"
 #include "programs/darkroom/run/frames.hpp"
-#include "reduced_frame.hpp"
+#include "small_frame.hpp"
 
 namespace app {
 
@@ -61,7 +61,7 @@ class FrameSource final : public LiveSource {
     /// With the lock.
     void keep(std::size_t number, darkroom::Result<std::shared_ptr<Decoded>> made);
     [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
-    [[nodiscard]] const darkroom::DevelopInput& input() const { return reduced_ ? reduced_->input() : shown_->input; }
+    [[nodiscard]] const darkroom::DevelopInput& input() const { return small_ ? small_->input() : shown_->input; }
 
     darkroom::Device& device_;
     std::vector<darkroom::NumberedFile> files_;
@@ -80,8 +80,8 @@ class FrameSource final : public LiveSource {
     std::shared_ptr<Decoded> shown_;
     bool is_new_ = true;  ///< it is still to be uploaded
     bool is_cut_ = true;
-    std::uint32_t divisor_ = 1;
-    std::optional<ReducedFrame> reduced_;  ///< of what is shown, where the divisor is above 1
+    double scale_ = 1;
+    std::optional<SmallFrame> small_;  ///< of what is shown, where the scale is below 1
     darkroom::FrameUpload upload_;
     darkroom::Frame frame_;  ///< of what was uploaded last
     std::vector<darkroom::Light> lights_;

@@ -26,7 +26,7 @@ struct LiveMoment {
     darkroom::render::FrameJitter jitter;  ///< of a scene
     float aspect = 1;                      ///< of its picture
     bool is_post_off = false;              ///< a picture by the scene's own shaders is wanted
-    std::uint32_t divisor = 1;  ///< frames that have a size are wanted with so many times fewer pixels each way
+    double scale = 1;                      ///< of the sides that frames of a size of their own are wanted with
 };
 
 class LiveSource {
@@ -36,7 +36,7 @@ class LiveSource {
     LiveSource& operator=(const LiveSource&) = delete;
     virtual ~LiveSource() = default;
 
-    /// Of the frames where they have a size of their own, whatever the divisor; else whatever prepare() is told.
+    /// Of the frames where they have a size of their own, however small prepare() makes them; else what it is told.
     [[nodiscard]] virtual std::optional<VkExtent2D> extent() const = 0;
     /// Would prepare() replace images that unfinished frames may use?
     [[nodiscard]] virtual bool must_wait(const LiveMoment& moment, VkExtent2D extent) const = 0;

@@ -21,13 +21,13 @@ darkroom::Frame as_reusable(darkroom::Frame frame) {
     return frame;
 }
 
-namespace {
-
-bool is_equal(const scene::OrbitOverride& a, const scene::OrbitOverride& b) {
+bool is_same_place(const scene::OrbitOverride& a, const scene::OrbitOverride& b) {
     return a.distance == b.distance && a.yaw == b.yaw && a.pitch == b.pitch && a.target == b.target &&
            a.field_of_view == b.field_of_view && a.ortho_height == b.ortho_height &&
            a.least_far_distance == b.least_far_distance;
 }
+
+namespace {
 
 /// The exposure is the display's alone.
 bool is_equal(const render::DrawOptions& a, const render::DrawOptions& b, bool is_display) {
@@ -40,11 +40,11 @@ bool is_equal(const render::DrawOptions& a, const render::DrawOptions& b, bool i
 bool is_equal(const LiveMoment& a, const LiveMoment& b, bool is_moved) {
     const auto has_same_way = [](const LiveMoment& one, const LiveMoment& other) {
         if (!one.previous_orbit || !other.previous_orbit) return !one.previous_orbit && !other.previous_orbit;
-        return is_equal(*one.previous_orbit, *other.previous_orbit);
+        return is_same_place(*one.previous_orbit, *other.previous_orbit);
     };
     const bool is_display = a.is_post_off || a.draw.debug != render::DebugView::None;
     const bool is_same_time = a.time == b.time && a.previous_time == b.previous_time;
-    return (is_same_time || !is_moved) && a.is_post_off == b.is_post_off && is_equal(a.orbit, b.orbit) &&
+    return (is_same_time || !is_moved) && a.is_post_off == b.is_post_off && is_same_place(a.orbit, b.orbit) &&
            has_same_way(a, b) && is_equal(a.draw, b.draw, is_display);
 }
 

@@ -9,6 +9,9 @@
 
 namespace app {
 
+/// Do both see the scene from the same place?
+[[nodiscard]] bool is_same_place(const darkroom::scene::OrbitOverride& a, const darkroom::scene::OrbitOverride& b);
+
 class SceneSource final : public LiveSource {
   public:
     struct Desc {

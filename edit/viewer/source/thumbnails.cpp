@@ -13,7 +13,8 @@
 #include "edit/edits.hpp"
 #include "gpu/device/context.hpp"
 #include "programs/darkroom/run/frames.hpp"
-#include "reduced_frame.hpp"
+#include "programs/darkroom/run/jitter.hpp"
+#include "small_frame.hpp"
 
 namespace app {
 
@@ -24,7 +25,7 @@ using darkroom::Result;
 namespace {
 
 /// As wide as a line of the menu has room for, on a screen of twice the usual scale.
-constexpr std::uint32_t max_width = 160;
+constexpr double max_width = 160;
 constexpr std::size_t columns = 8;
 
 /// With an amount that shows what it does, where its default is to do nothing. What reads a second picture gets the
@@ -45,38 +46,26 @@ Result<Look> with_effect(const Look& look, const EffectInfo& effect) {
 
 }  // namespace
 
-/// Its spans are those of the pixels that are kept.
 struct Thumbnails::Small {
-    Small(const darkroom::Frame& frame, darkroom::FrameLayers layers, std::uint32_t divisor)
+    Small(const darkroom::Frame& frame, darkroom::FrameLayers layers, VkExtent2D extent)
         : file(frame_file(frame, std::move(layers))),
           lights(take_lights(file)),
           whole(develop_input(file, lights)),
-          reduced(whole, divisor),
-          input(reduced.input()) {
-        const darkroom::UploadLayers& kept = reduced.layers();
-        input.color = kept[0].values;
-        input.color_halves = kept[0].halves;
-        input.depth = kept[1].values;
-        input.normals = kept[2].values;
-        input.normal_halves = kept[2].halves;
-        input.velocity = kept[3].values;
-        input.velocity_halves = kept[3].halves;
-        input.reactive = kept[4].values;
-        input.transparency = kept[5].values;
+          small(whole, extent),
+          input(small.input()) {
         input.ui = {};
     }
     darkroom::FrameFile file;
     std::vector<darkroom::ReferenceLight> lights;
     darkroom::DevelopInput whole;
-    ReducedFrame reduced;
+    SmallFrame small;
     darkroom::DevelopInput input;
 };
 
 Thumbnails::Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, Desc desc, darkroom::FrameReadback read)
     : device_(device), frame_(frame), desc_(std::move(desc)), frame_read_(std::move(read)) {
     const VkExtent2D whole = frame.color.used_region().extent;
-    while (whole.width / divisor_ > max_width) divisor_ *= 2;
-    extent_ = {(whole.width + divisor_ - 1) / divisor_, (whole.height + divisor_ - 1) / divisor_};
+    extent_ = scaled(whole, std::min(1.0, max_width / whole.width));
     // What the frame refers to goes; what a file stores of it stays.
     frame_.lights = {};
     frame_.camera = as_stored(frame.camera);
@@ -183,7 +172,7 @@ void Thumbnails::record(VkCommandBuffer commands) {
 }
 
 void Thumbnails::make_all(const std::stop_token& token) {
-    const Small small(frame_, frame_read_.layers(), divisor_);
+    const Small small(frame_, frame_read_.layers(), extent_);
     // Kernels of their own are those of every look; joined ones would be made anew for each effect.
     const darkroom::DevelopDesc desc{.fuse = false};
     darkroom::Composer composer(device_);

@@ -78,7 +78,6 @@ class Thumbnails {
     Desc desc_;
     darkroom::FrameReadback frame_read_;
     VkExtent2D extent_{};  ///< of each
-    std::uint32_t divisor_ = 1;
     darkroom::gpu::Image atlas_;
     darkroom::gpu::Buffer staging_;
     bool is_drawn_ = false;  ///< the atlas has been written to

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A stored frame with every second or fourth pixel each way, to be developed while a hand moves its look.
+// A stored frame with fewer pixels, to be developed while a hand moves its look, and for pictures of effects.
 
 #include <array>
 
@@ -8,12 +8,12 @@
 
 namespace app {
 
-class ReducedFrame {
+class SmallFrame {
   public:
-    /// `input` and what it refers to stay as long as this. `divisor`: a power of two.
-    ReducedFrame(const darkroom::DevelopInput& input, std::uint32_t divisor);
+    /// `input` and what it refers to stay as long as this. Each pixel is the one in the middle of those it stands for.
+    SmallFrame(const darkroom::DevelopInput& input, VkExtent2D extent);
 
-    /// Its extent is the reduced one; its layers are those of layers().
+    /// Refers to layers(), whose formats are those of the whole frame.
     [[nodiscard]] const darkroom::DevelopInput& input() const { return input_; }
     [[nodiscard]] const darkroom::UploadLayers& layers() const { return layers_; }
 
