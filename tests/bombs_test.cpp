@@ -6,7 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "image/codec/png_write.hpp"
+#include "formats/png/png_write.hpp"
 #include "image/picture/write.hpp"
 #include "image/test_bytes.hpp"
 #include "scene/gltf/test_model.hpp"
@@ -280,7 +280,7 @@ TEST_F(CliBombs, PicturesThatAreMuchWork) {
     ASSERT_TRUE(write_picture(path("one.png"), Picture(1, 1)));
     const Cost usual = this->usual("one.png");
     const std::vector<std::uint8_t> letters(std::size_t{1620} * 1620 * 3, 'A');
-    const auto packed = encode_png({.width = 1620, .height = 1620, .samples = letters.data(), .level = 9});
+    const auto packed = encode_png({.width = 1620, .height = 1620, .compression = "9", .samples = letters.data()});
     ASSERT_TRUE(packed);
     const std::string file(reinterpret_cast<const char*>(packed->data()), packed->size());
     const std::size_t start = file.find("IDAT") + 4;

@@ -146,7 +146,7 @@ areas = {
     "scenes/draco": "Scenes and models: Draco",
     "scenes/render": "The renderer of scenes",
     "files/image": "Pictures and frames",
-    "files/decoders": "Decoders of pictures",
+    "files/formats": "Formats of pictures",
     "files/decode": "The process that decodes",
     "files/oiio": "Pictures by OpenImageIO",
     "files/tables": "Colour tables",

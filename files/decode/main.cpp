@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // darkroom_decode [MODULE]: decodes pictures for the program that started it (image/confined/decoder_pool.hpp), by
-// OpenEXR, libjpeg, libpng, libtiff and libwebp, and where it names the module, by OpenImageIO. A process of its own,
+// what reads their formats, and where it names the module, by OpenImageIO. A process of its own,
 // which opens no file, no connection and no process, whatever a picture makes of a decoder: pictures and their samples
 // are in memory that the program shares with it.
 #include <dlfcn.h>
@@ -19,12 +19,8 @@
 #include "confined/inside/serve.hpp"
 #include "confined/messages.hpp"
 #include "confined/shared_memory.hpp"
-#include "decoders/exr_source.hpp"
-#include "decoders/jpeg_source.hpp"
-#include "decoders/messages.hpp"
-#include "decoders/png_source.hpp"
-#include "decoders/tiff_source.hpp"
-#include "decoders/webp_source.hpp"
+#include "formats/file_format.hpp"
+#include "formats/messages.hpp"
 #include "image/codec/codecs.hpp"
 
 namespace darkroom {
@@ -46,14 +42,14 @@ std::string load(const char* module) {
 }
 
 /// Nothing: by OpenImageIO alone, which is not here.
-Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {
-    if (kind == FileKind::OpenExr) return ExrSource::open(bytes, max_threads);
-    if (kind == FileKind::Png) return open_png(bytes);
-    if (kind == FileKind::Jpeg) return open_jpeg(bytes);
-    if (kind == FileKind::WebP) return open_webp(bytes);
-    if (module_codecs != nullptr) return module_codecs->open(kind, bytes);
-    if (kind == FileKind::Tiff) return open_tiff(bytes);
-    return std::unique_ptr<PictureSource>();
+Result<std::unique_ptr<PictureSource>> open(const FileFormat& format, std::span<const std::byte> bytes,
+                                            std::size_t max_threads) {
+    std::unique_ptr<PictureSource> source;
+    if (format.open != nullptr) {
+        DARKROOM_TRY_VALUE(source, format.open(bytes, max_threads));
+    }
+    if (source == nullptr && module_codecs != nullptr) return module_codecs->open(format, bytes);
+    return source;
 }
 
 /// The picture that was asked for last: most are read in several requests.
@@ -104,7 +100,7 @@ class Server {
         } catch (const std::bad_alloc&) {
             done = user_error("takes more memory to decode than its size allows");
         } catch (const std::exception& exception) {
-            done = user_error("cannot be read as " + std::string(name_of(static_cast<FileKind>(request.kind))) + ": " +
+            done = user_error("cannot be read as " + std::string(all_formats()[request.format]->name) + ": " +
                               one_printable_line(exception.what()));
         }
         if (!done) picture_ = {};
@@ -128,7 +124,7 @@ class Server {
             picture_.bytes = Mapping(files[next++].number(), request.file_size, false);
             if (picture_.bytes.bytes().empty()) throw std::bad_alloc();
             DARKROOM_TRY_VALUE(picture_.source,
-                               open(static_cast<FileKind>(request.kind), picture_.bytes.bytes(), request.max_threads));
+                               open(*all_formats()[request.format], picture_.bytes.bytes(), request.max_threads));
             picture_.number = request.source;
         }
         if (request.memory_size > 0) {

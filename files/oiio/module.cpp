@@ -42,23 +42,7 @@ class MemoryReader final : public OIIO::Filesystem::IOMemReader {
     }
 };
 
-const char* format_of(FileKind kind) {
-    switch (kind) {
-        case FileKind::OpenExr:
-            return "openexr";
-        case FileKind::Png:
-            return "png";
-        case FileKind::Jpeg:
-            return "jpeg";
-        case FileKind::Tiff:
-            return "tiff";
-        case FileKind::Radiance:
-            return "hdr";
-        case FileKind::WebP:
-            return "webp";
-    }
-    return "";
-}
+std::string name_of(const FileFormat& format) { return std::string(format.openimageio); }
 
 std::optional<SampleKind> sample_kind_of(OIIO::TypeDesc type) {
     switch (type.basetype) {
@@ -147,20 +131,20 @@ RadianceHeader radiance_header(std::span<const std::byte> bytes) {
 
 class OiioSource final : public PictureSource {
   public:
-    static Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes) {
+    static Result<std::unique_ptr<PictureSource>> open(const FileFormat& format, std::span<const std::byte> bytes) {
         auto out = std::make_unique<OiioSource>();
         out->memory_ = std::make_unique<MemoryReader>(bytes);
         // What OpenImageIO 2.4 lists once, its formats and the words of ICC profiles, it lists without a lock.
         static std::mutex opening;
         const std::lock_guard lock(opening);
-        out->input_ = OIIO::ImageInput::create(format_of(kind));
-        if (!out->input_) return machine_error(fmt::format("OpenImageIO was built without {}", name_of(kind)));
+        out->input_ = OIIO::ImageInput::create(name_of(format));
+        if (!out->input_) return machine_error(fmt::format("OpenImageIO was built without {}", format.name));
         out->input_->set_ioproxy(out->memory_.get());
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
         // The extension keeps readers content that also look at the name.
-        if (!out->input_->open(fmt::format("memory.{}", format_of(kind)), out->spec_, config))
-            return user_error(fmt::format("cannot be read as {}: {}", name_of(kind), out->reason()));
+        if (!out->input_->open(fmt::format("memory.{}", format.openimageio), out->spec_, config))
+            return user_error(fmt::format("cannot be read as {}: {}", format.name, out->reason()));
         DARKROOM_TRY(flat(out->spec_));
         FilePart part{.channels = out->spec_.channelnames,
                       .width = static_cast<std::uint32_t>(out->spec_.width),
@@ -169,7 +153,7 @@ class OiioSource final : public PictureSource {
         part.display_height = part.height;
         part.is_associated =
             out->spec_.alpha_channel >= 0 && out->spec_.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-        if (kind == FileKind::Radiance) out->header_ = radiance_header(bytes);
+        if (format.openimageio == "hdr") out->header_ = radiance_header(bytes);
         part.channels.resize(static_cast<std::size_t>(out->spec_.nchannels));
         for (int channel = 0; channel < out->spec_.nchannels; ++channel) {
             const auto sample_kind = sample_kind_of(out->spec_.channelformat(channel));
@@ -269,19 +253,20 @@ class OiioSource final : public PictureSource {
     std::vector<std::byte> samples_;
 };
 
-Result<std::vector<std::byte>> encode(const EncodeDesc& desc) {
+Result<std::vector<std::byte>> encode(const FileFormat& format, const EncodeDesc& desc) {
     const auto error = [&](std::string_view why) {
-        return machine_error(fmt::format("cannot be written as {}: {}", name_of(desc.file),
+        return machine_error(fmt::format("cannot be written as {}: {}", format.name,
                                          why.empty() ? "unknown reason" : one_printable_line(why)));
     };
     OIIO::ImageSpec spec(static_cast<int>(desc.width), static_cast<int>(desc.height), static_cast<int>(desc.channels),
                          type_of(desc.kind));
     // OpenImageIO would write the time of day, and no file would be the same twice. An unknown time is blanks
     // (EXIF 2.3, 4.6.4, DateTime).
-    if (desc.file == FileKind::Tiff) spec.attribute("DateTime", "    :  :     :  :  ");
+    const bool is_tiff = format.openimageio == "tiff";
+    if (is_tiff) spec.attribute("DateTime", "    :  :     :  :  ");
     // Alpha is carried, never applied: without this, writers divide colour by it, or say that it was multiplied.
     if (!desc.is_associated) spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (desc.file == FileKind::Jpeg) {
+    if (format.openimageio == "jpeg") {
         spec.attribute("oiio:ColorSpace", "sRGB");
         const int quality = desc.quality.value_or(95);
         // Who asks for so much does not want red and blue at half the resolution.
@@ -290,12 +275,12 @@ Result<std::vector<std::byte>> encode(const EncodeDesc& desc) {
         spec.attribute("jpeg:subsampling",
                        desc.chroma.empty() ? quality >= full_chroma ? "4:4:4" : "4:2:0" : desc.chroma);
     }
-    if (desc.file == FileKind::Tiff) spec.attribute("compression", desc.compression.empty() ? "zip" : desc.compression);
+    if (is_tiff) spec.attribute("compression", desc.compression.empty() ? "zip" : desc.compression);
     OIIO::Filesystem::IOVecOutput memory;
-    auto output = OIIO::ImageOutput::create(format_of(desc.file));
+    auto output = OIIO::ImageOutput::create(name_of(format));
     if (!output) return error("OpenImageIO was built without it");
     if (!output->set_ioproxy(&memory)) return error("OpenImageIO cannot write it to memory");
-    if (!output->open(fmt::format("memory.{}", format_of(desc.file)), spec)) return error(output->geterror());
+    if (!output->open(fmt::format("memory.{}", format.openimageio), spec)) return error(output->geterror());
     if (!output->write_image(type_of(desc.kind), desc.samples)) return error(output->geterror());
     if (!output->close()) return error(output->geterror());
     const std::span<const std::byte> bytes = std::as_bytes(std::span(memory.buffer()));
@@ -332,14 +317,14 @@ extern "C" DARKROOM_MODULE_EXPORT const darkroom::Codecs* darkroom_oiio_codecs()
     static const Codecs codecs{
         .prepare =
             [] {
-                for (const FileKind kind : {FileKind::Tiff, FileKind::Radiance})
-                    static_cast<void>(OIIO::ImageInput::create(format_of(kind)));
+                for (const char* const name : {"tiff", "hdr"}) static_cast<void>(OIIO::ImageInput::create(name));
             },
         .open =
-            [](FileKind kind, std::span<const std::byte> bytes) {
-                return guarded(OiioSource::open, "cannot be decoded", kind, bytes);
+            [](const FileFormat& format, std::span<const std::byte> bytes) {
+                return guarded(OiioSource::open, "cannot be decoded", format, bytes);
             },
-        .encode = [](const EncodeDesc& desc) { return guarded(encode, "cannot be encoded", desc); },
+        .encode = [](const FileFormat& format,
+                     const EncodeDesc& desc) { return guarded(encode, "cannot be encoded", format, desc); },
         .resample = [](const FloatPixels& from,
                        const FloatPixels& to) { return guarded(resample, "cannot be resized", from, to); },
     };

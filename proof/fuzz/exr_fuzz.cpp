@@ -7,9 +7,9 @@
 
 #include <algorithm>
 
-#include "decoders/exr_source.hpp"
+#include "formats/exr/exr_check.hpp"
+#include "formats/exr/exr_source.hpp"
 #include "fuzz/target.hpp"
-#include "image/exr/check.hpp"
 #include "image/exr/write.hpp"
 
 namespace darkroom::fuzz::exr_fuzz {

@@ -7,18 +7,11 @@
 
 #include <algorithm>
 
-#include "decoders/exif.hpp"
-#include "decoders/jpeg_source.hpp"
-#include "decoders/png_source.hpp"
-#include "decoders/tiff_source.hpp"
-#include "decoders/webp_source.hpp"
+#include "formats/exif.hpp"
+#include "formats/exr/exr.hpp"
+#include "formats/icc_profile.hpp"
 #include "fuzz/target.hpp"
-#include "image/codec/jpeg_check.hpp"
-#include "image/codec/png_check.hpp"
-#include "image/codec/tiff_check.hpp"
-#include "image/color/icc_profile.hpp"
 #include "image/picture/picture_source.hpp"
-#include "image/webp/check.hpp"
 
 namespace darkroom::fuzz::picture_fuzz {
 namespace {
@@ -42,43 +35,20 @@ std::string wrong_rows(PictureSource& source) {
     return done ? std::string() : wrong_error(done.error());
 }
 
-Opened open(FileKind kind, std::span<const std::byte> bytes) {
-    switch (kind) {
-        case FileKind::Png:
-            return open_png(bytes);
-        case FileKind::Jpeg:
-            return open_jpeg(bytes);
-        case FileKind::Tiff:
-            return open_tiff(bytes);
-        case FileKind::WebP:
-            return open_webp(bytes);
-        default:
-            return nullptr;
-    }
-}
-
-/// What a decoder may see; empty: all.
-Result<std::vector<std::byte>> checked(FileKind kind, std::span<const std::byte> bytes) {
-    if (kind == FileKind::Png) return check_png(bytes);
-    if (kind == FileKind::Tiff) return check_tiff(bytes);
-    if (kind == FileKind::Jpeg) DARKROOM_TRY(check_jpeg(bytes));
-    if (kind == FileKind::WebP) DARKROOM_TRY(check_webp(bytes));
-    return std::vector<std::byte>();
-}
-
 std::string run(std::string_view input) {
     const std::span<const std::byte> bytes = bytes_of(input);
     const int orientation = orientation_of_exif(bytes);
     if (orientation < 1 || orientation > 8) return fmt::format("orientation {}", orientation);
     const std::string profile = profile_description(bytes);
     if (std::string wrong = profile.empty() ? std::string() : wrong_line(profile); !wrong.empty()) return wrong;
-    const Result<FileKind> kind = kind_of_file(bytes);
-    if (!kind || *kind == FileKind::OpenExr) return {};
-    if (*kind == FileKind::Tiff) static_cast<void>(profile_description(profile_of_tiff(bytes)));
-    const Result<std::vector<std::byte>> seen = checked(*kind, bytes);
+    const auto format = format_of_file(bytes);
+    if (!format || *format == &exr_format()) return {};
+    const Result<std::vector<std::byte>> seen = (*format)->check(bytes);
     if (!seen) return wrong_error(seen.error());
+    if ((*format)->color != nullptr) static_cast<void>((*format)->color(bytes, true));
+    if ((*format)->open == nullptr) return {};
     try {
-        const Opened source = open(*kind, seen->empty() ? bytes : std::span<const std::byte>(*seen));
+        const Opened source = (*format)->open(seen->empty() ? bytes : std::span<const std::byte>(*seen), 1);
         if (!source) return wrong_error(source.error());
         return *source == nullptr || (*source)->parts().empty() ? std::string() : wrong_rows(**source);
     } catch (const std::exception&) {

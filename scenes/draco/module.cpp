@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/program_module.hpp"
-#include "decoders/file_kind.hpp"
+#include "formats/file_part.hpp"
 #include "scene/packed/draco_module.hpp"
 
 namespace darkroom::scene {

@@ -89,7 +89,8 @@ TEST_F(CliColor, SpacesOfAConfigurationAreRead) {
     EXPECT_NEAR(color_after({"--ocio", config, "--input-space", "rooted"})[2], grey * grey, 1e-3);
     expect_error(
         {"--ocio", config, "--input-space", "dubled"},
-        config + ": has no color space 'dubled', did you mean 'doubled'? there are raw, lin_rec709, rooted and doubled");
+        config +
+            ": has no color space 'dubled', did you mean 'doubled'? there are raw, lin_rec709, rooted and doubled");
     expect_error({"--ocio", path("none.ocio"), "--input-space", "rooted"},
                  path("none.ocio") + ": there is no such file");
     write("bad.ocio", "ocio_profile_version: 2\n");
@@ -237,7 +238,7 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     expect_error({"--ocio", config}, "--ocio: needs --input-space or --display, which use it");
     expect_error({"--view", "root"}, "--view: needs --display NAME");
     expect_error({"--ocio", config, "--display", "screen", "--bits", "half"},
-                 path("none.png") + ": half samples hold light, not a view of a display; .png .jpg .tif hold one");
+                 path("none.png") + ": half samples hold light, not a view of a display; .jpg .png .tif hold one");
 }
 
 TEST_F(CliColor, AViewOfWhatIsTransparentIsThatOfItsColorAndGlowsAsBrightAsItLooks) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/file_format.hpp"
 #include "panels/show/plan_picture.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/slider.hpp"
@@ -167,9 +168,11 @@ void EditPanels::draw_view_bar(PictureView& picture) {
 }
 
 void EditPanels::choose_other() {
+    std::vector<std::string> extensions = darkroom::picture_extensions();
+    extensions.insert(extensions.begin(), ".toml");
     look_.files().open({.title = "A look, or a picture, to compare with",
                         .start = look_.folder(),
-                        .extensions = {".toml", ".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"},
+                        .extensions = std::move(extensions),
                         .then = [this](const std::filesystem::path& file) { wanted_other_ = file; }});
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/file_format.hpp"
 #include "panels/widgets/icons.hpp"
 #include "panels/widgets/theme.hpp"
 #include "viewer/panels/areas.hpp"
@@ -90,11 +91,13 @@ void EditPanels::draw_view_menu() {
 }
 
 void EditPanels::draw_open_button() {
-    if (ImGui::Button(open_text))
+    if (ImGui::Button(open_text)) {
+        std::vector<std::string> extensions = darkroom::picture_extensions();
+        extensions.insert(extensions.begin(), {".toml", ".glb", ".gltf"});
         look_.files().open({.title = "A scene, a model, a frame or a picture",
-                            .extensions = {".toml", ".glb", ".gltf", ".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif",
-                                           ".tiff", ".webp"},
+                            .extensions = std::move(extensions),
                             .then = [this](const std::filesystem::path& file) { opened_ = file; }});
+    }
     look_.note_place("view/open");
     tip("Opens another scene, model, frame or picture to see through the look.");
 }

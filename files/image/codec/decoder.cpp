@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/files.hpp"
-#include "decoders/exr_source.hpp"
+#include "formats/exr/exr_source.hpp"
 #include "image/color/interop_space.hpp"
 #include "image/picture/oriented_source.hpp"
 
@@ -37,10 +37,11 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max
     return Decoder(std::move(state));
 }
 
-FileKind Decoder::kind() const { return state_->opened.kind; }
+const FileFormat& Decoder::format() const { return *state_->opened.format; }
 FileColor Decoder::color(std::size_t part) const {
     const std::vector<float> values = numbers(part, "chromaticities");
-    FileColor out = file_color(kind(), state_->bytes, is_integer(parts()[part].kinds.front()));
+    FileColor out;
+    if (format().color != nullptr) out = format().color(state_->bytes, is_integer(parts()[part].kinds.front()));
     if (values.size() == 8)
         out = {.coding = ColorCoding{{.red = {values[0], values[1]},
                                       .green = {values[2], values[3]},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // An image file, opened and checked but not yet decoded: its parts, windows and channels, and two ways to take the
-// samples out. The kind of file is told by its content, not by its name. It knows no channel by name and no colour
+// samples out. The format is told by its content, not by its name. It knows no channel by name and no colour
 // space; frames and pictures are made from it in frame_file.hpp.
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/primaries.hpp"
-#include "image/color/file_color.hpp"
+#include "formats/file_color.hpp"
 #include "image/exr/attributes.hpp"
 #include "image/picture/picture_source.hpp"
 
@@ -33,7 +33,7 @@ class Decoder {
     Decoder& operator=(Decoder&&) noexcept;
     ~Decoder();
 
-    [[nodiscard]] FileKind kind() const;
+    [[nodiscard]] const FileFormat& format() const;
     /// What the file says of a part's colour. Of OpenEXR colorInteropID, which knows curves, then chromaticities.
     [[nodiscard]] FileColor color(std::size_t part) const;
     [[nodiscard]] std::span<const FilePart> parts() const;

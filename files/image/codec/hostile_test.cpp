@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Files that lie about what is in them: what is refused before a decoder sees them, and what of a file it gets to see.
-#include "image/codec/jpeg_check.hpp"
-#include "image/codec/png_check.hpp"
-#include "image/codec/tiff_check.hpp"
+#include "formats/jpeg/jpeg_check.hpp"
+#include "formats/png/png_check.hpp"
+#include "formats/tiff/tiff_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/test_bytes.hpp"
 #include "image/test_files.hpp"

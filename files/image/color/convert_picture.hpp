@@ -3,8 +3,8 @@
 // The numbers of a picture, as a file has them, to light, and the light to linear Rec. 709. Alpha stays.
 
 #include "core/primaries.hpp"
-#include "decoders/file_kind.hpp"
-#include "image/color/color_coding.hpp"
+#include "formats/color_coding.hpp"
+#include "formats/file_part.hpp"
 #include "image/picture/picture.hpp"
 
 namespace darkroom {

@@ -4,10 +4,10 @@
 #include <cstring>
 #include <string>
 
-#include "image/codec/tiff_check.hpp"
+#include "formats/file_color.hpp"
+#include "formats/icc_profile.hpp"
+#include "formats/tiff/tiff_check.hpp"
 #include "image/color/convert_picture.hpp"
-#include "image/color/file_color.hpp"
-#include "image/color/icc_profile.hpp"
 #include "image/color/interop_space.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "image/color/color_coding.hpp"
+#include "formats/color_coding.hpp"
 
 namespace darkroom {
 

@@ -5,11 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
-#include "image/color/color_coding.hpp"
 
 namespace darkroom {
 namespace {
@@ -51,35 +51,6 @@ std::string output_space_names_of(bool is_integer) {
                                            return (is_integer ? space.integers : space.floats).has_value();
                                        }),
                                        ", "));
-}
-
-Chromaticities chromaticities_of(Primaries primaries) {
-    if (primaries == Primaries::P3) return find_input_space("p3")->primaries;
-    return primaries == Primaries::Rec2020 ? find_input_space("rec2020")->primaries : Chromaticities{};
-}
-
-std::array<std::uint8_t, 2> video_codes_of(const ColorState& state) {
-    const auto primaries = [&]() -> std::uint8_t {
-        if (state.primaries == Primaries::P3) return 12;
-        return state.primaries == Primaries::Rec2020 ? 9 : 1;
-    };
-    const auto curve = [&]() -> std::uint8_t {
-        switch (state.transfer) {
-            case Transfer::Pq:
-                return 16;
-            case Transfer::Hlg:
-                return 18;
-            case Transfer::Gamma22:
-                return 4;
-            case Transfer::Linear:
-            case Transfer::Scrgb:
-                return 8;
-            case Transfer::Srgb:
-                break;
-        }
-        return 13;
-    };
-    return {primaries(), curve()};
 }
 
 }  // namespace darkroom

@@ -3,15 +3,11 @@
 // Colour spaces that pictures may be written in, by name, and how files say so: PNG by the chunk cICP, OpenEXR by its
 // chromaticities.
 
-#include <array>
-#include <cstdint>
 #include <darkroom/color_state.hpp>
 #include <darkroom/result.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include "core/primaries.hpp"
 
 namespace darkroom {
 
@@ -26,9 +22,5 @@ struct OutputSpace {
 [[nodiscard]] std::string output_space_names(std::string_view separator);
 /// The names of those that integers, or floats, can be written in.
 [[nodiscard]] std::string output_space_names_of(bool is_integer);
-
-[[nodiscard]] Chromaticities chromaticities_of(Primaries primaries);
-/// Primaries and curve by ITU-T H.273, as PNG's cICP and video have them.
-[[nodiscard]] std::array<std::uint8_t, 2> video_codes_of(const ColorState& state);
 
 }  // namespace darkroom

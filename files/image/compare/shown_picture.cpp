@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/srgb.hpp"
-#include "image/codec/png_write.hpp"
+#include "formats/png/png_write.hpp"
 #include "image/picture/resize.hpp"
 
 namespace darkroom {

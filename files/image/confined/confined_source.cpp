@@ -70,6 +70,10 @@ class Lease {
     DecoderProcess& process_;
 };
 
+std::uint32_t number_of(const FileFormat& format) {
+    return static_cast<std::uint32_t>(std::ranges::find(all_formats(), &format) - all_formats().begin());
+}
+
 std::uint64_t next_number() {
     static std::atomic<std::uint64_t> last{0};
     return ++last;
@@ -77,23 +81,23 @@ std::uint64_t next_number() {
 
 }  // namespace
 
-ConfinedSource::ConfinedSource(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads)
-    : kind_(kind),
-      needs_openimageio_(kind == FileKind::Radiance),
+ConfinedSource::ConfinedSource(const FileFormat& format, std::span<const std::byte> bytes, std::size_t max_threads)
+    : format_(format),
+      needs_openimageio_(format.open == nullptr),
       file_(bytes),
       max_threads_(static_cast<std::uint32_t>(max_threads)),
       number_(next_number()) {}
 
-Result<std::unique_ptr<PictureSource>> ConfinedSource::open(FileKind kind, std::span<const std::byte> bytes,
+Result<std::unique_ptr<PictureSource>> ConfinedSource::open(const FileFormat& format, std::span<const std::byte> bytes,
                                                             std::size_t max_threads) {
-    std::unique_ptr<ConfinedSource> out(new ConfinedSource(kind, bytes, max_threads));
+    std::unique_ptr<ConfinedSource> out(new ConfinedSource(format, bytes, max_threads));
     std::vector<std::byte> answer;
     const bool is_sure = out->needs_openimageio_;
     auto asked = out->ask(0, 0, 0, {}, answer);
     if (asked && out->needs_openimageio_ != is_sure) asked = out->ask(0, 0, 0, {}, answer);
     if (!asked) return failure(std::move(asked));
     auto description = unpacked(answer);
-    if (!description) return user_error(fmt::format("cannot be read as {}: its decoder fails", name_of(kind)));
+    if (!description) return user_error(fmt::format("cannot be read as {}: its decoder fails", format.name));
     out->description_ = std::move(*description);
     for (const auto& part : out->description_.parts) out->parts_.push_back(part.part);
     return std::unique_ptr<PictureSource>(std::move(out));
@@ -149,7 +153,7 @@ Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t 
     const std::size_t size =
         rows == 0 ? 0 : widest_of(places) * places.size() * parts()[part].width * std::size_t{rows};
     DecodeRequest request{.source = number_,
-                          .kind = static_cast<std::uint32_t>(kind_),
+                          .format = number_of(format_),
                           .max_threads = max_threads_,
                           .part = static_cast<std::uint32_t>(part),
                           .row = row,

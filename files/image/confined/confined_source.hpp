@@ -8,15 +8,17 @@
 #include <memory>
 #include <span>
 
-#include "decoders/messages.hpp"
-#include "decoders/picture_source.hpp"
+#include "formats/file_format.hpp"
+#include "formats/messages.hpp"
+#include "formats/picture_source.hpp"
 
 namespace darkroom {
 
 class ConfinedSource final : public PictureSource {
   public:
     /// The bytes have been checked, and outlive it. `max_threads`: as for open_source.
-    [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes,
+    [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(const FileFormat& format,
+                                                                     std::span<const std::byte> bytes,
                                                                      std::size_t max_threads);
 
     [[nodiscard]] std::vector<double> numbers(std::size_t part, std::string_view attribute) const override;
@@ -24,7 +26,7 @@ class ConfinedSource final : public PictureSource {
     [[nodiscard]] std::uint32_t row_unit(std::size_t part) const override;
 
   private:
-    ConfinedSource(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads);
+    ConfinedSource(const FileFormat& format, std::span<const std::byte> bytes, std::size_t max_threads);
     Result<> read(std::size_t part, std::uint32_t row, std::uint32_t rows,
                   std::span<const SamplePlace> places) override;
     /// Samples of these rows, or what the picture is.
@@ -32,7 +34,7 @@ class ConfinedSource final : public PictureSource {
                  std::vector<std::byte>& answer);
     [[nodiscard]] std::uint64_t decoded_size() const;
 
-    FileKind kind_;
+    const FileFormat& format_;
     bool needs_openimageio_;
     std::span<const std::byte> file_;
     std::uint32_t max_threads_;

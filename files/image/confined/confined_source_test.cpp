@@ -15,8 +15,7 @@
 #include "confined/shared_memory.hpp"
 #include "core/files.hpp"
 #include "core/test_support_small.hpp"
-#include "decoders/exr_source.hpp"
-#include "decoders/webp_source.hpp"
+#include "formats/exr/exr_source.hpp"
 #include "image/codec/codecs.hpp"
 #include "image/confined/decoder_pool.hpp"
 #include "image/frame/frame_file.hpp"
@@ -30,11 +29,10 @@ namespace {
 
 using Source = Result<std::unique_ptr<PictureSource>>;
 
-Source open_here(FileKind kind, std::span<const std::byte> bytes) {
-    if (kind == FileKind::OpenExr) return ExrSource::open(bytes, 1);
-    if (kind == FileKind::WebP) return open_webp(bytes);
+Source open_here(const FileFormat& format, std::span<const std::byte> bytes) {
+    if (format.name == "OpenEXR" || format.name == "WebP") return format.open(bytes, 1);
     DARKROOM_TRY_VALUE(const auto library, codecs());
-    return library->open(kind, bytes);
+    return library->open(format, bytes);
 }
 
 /// All samples of a part, as floats or as they are, in bands of so many rows.
@@ -65,13 +63,13 @@ std::vector<std::byte> told(const Result<std::vector<std::byte>>& samples) {
 void expect_same(const std::filesystem::path& path) {
     const auto bytes = read_file(path);
     ASSERT_TRUE(bytes) << path;
-    const auto kind = kind_of_file(*bytes);
-    ASSERT_TRUE(kind) << path;
-    const Source here = open_here(*kind, *bytes);
+    const auto format = format_of_file(*bytes);
+    ASSERT_TRUE(format) << path;
+    const Source here = open_here(**format, *bytes);
     const auto there = open_source(*bytes);
     ASSERT_TRUE(here) << path << here.error().text;
     ASSERT_TRUE(there) << path << there.error().text;
-    EXPECT_EQ(there->kind, *kind);
+    EXPECT_EQ(there->format, *format);
     EXPECT_EQ(dynamic_cast<const ExrSource*>(there->source.get()), nullptr);
     ASSERT_EQ((*here)->parts().size(), there->source->parts().size());
     for (std::size_t i = 0; i < (*here)->parts().size(); ++i) {
@@ -91,7 +89,7 @@ void expect_same(const std::filesystem::path& path) {
             EXPECT_EQ((*here)->numbers(i, name), there->source->numbers(i, name)) << path << name;
         for (const bool is_float : {false, true}) {
             // Anew: OpenImageIO goes back in no file that it has by no name.
-            const auto expected = samples_of(**open_here(*kind, *bytes), i, a.height, is_float);
+            const auto expected = samples_of(**open_here(**format, *bytes), i, a.height, is_float);
             ASSERT_TRUE(expected) << path << expected.error().text;
             EXPECT_EQ(*expected, told(samples_of(*there->source, i, a.height, is_float))) << path;
             EXPECT_EQ(*expected, told(samples_of(*there->source, i, 100, is_float))) << path;
@@ -155,7 +153,7 @@ TEST_F(ImageConfinedData, EveryPictureIsTheSame) {
         for (const auto& entry : std::filesystem::recursive_directory_iterator(data_ / folder)) {
             if (!entry.is_regular_file() || entry.file_size() > max_bytes) continue;
             const auto bytes = read_file(entry.path());
-            if (!bytes || !kind_of_file(*bytes) || !open_source(*bytes)) continue;
+            if (!bytes || !format_of_file(*bytes) || !open_source(*bytes)) continue;
             expect_same(entry.path());
             ++count;
         }

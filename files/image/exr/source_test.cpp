@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // OpenEXR files of all layouts, held against what OpenEXR itself makes of them.
 
-#include "decoders/exr_source.hpp"
+#include "formats/exr/exr_source.hpp"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -20,7 +20,7 @@
 #include <random>
 
 #include "core/files.hpp"
-#include "image/exr/check.hpp"
+#include "formats/exr/exr_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
 #include "image/test_files.hpp"

@@ -22,7 +22,7 @@
 #include <limits>
 
 #include "core/files.hpp"
-#include "decoders/exr_source.hpp"
+#include "formats/exr/exr_source.hpp"
 #include "image/color/interop_space.hpp"
 
 namespace darkroom {
@@ -146,8 +146,8 @@ Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::s
             }
         }
     } catch (const std::exception& exception) {
-        return machine_error(fmt::format("cannot be written as {}: {}", name_of(FileKind::OpenExr),
-                                         one_printable_line(exception.what())));
+        return machine_error(
+            fmt::format("cannot be written as {}: {}", exr_format().name, one_printable_line(exception.what())));
     }
     return std::move(memory.bytes);
 }

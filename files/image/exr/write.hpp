@@ -5,7 +5,6 @@
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <darkroom/result.hpp>
@@ -16,7 +15,7 @@
 #include <vector>
 
 #include "core/primaries.hpp"
-#include "decoders/file_kind.hpp"
+#include "formats/exr/exr.hpp"
 
 namespace darkroom {
 
@@ -39,9 +38,6 @@ struct ExrPart {
 [[nodiscard]] Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_view compression = {});
 /// Says of which primaries its light is, by chromaticities and by colorInteropID.
 void add_primaries(Imf::Header& header, const Chromaticities& of);
-
-inline constexpr std::array<std::string_view, 10> exr_compressions{"none",  "rle", "zips", "zip",  "piz",
-                                                                   "pxr24", "b44", "b44a", "dwaa", "dwab"};
 
 /// Would a channel of this name and kind come back as other numbers? DWA packs the last names R, G, B, Y, RY and BY by
 /// its cosine transform, PXR24 floats as 24 bits, B44 and B44A halves.

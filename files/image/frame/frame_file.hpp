@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/color_coding.hpp"
 #include "image/codec/decoder.hpp"
-#include "image/color/color_coding.hpp"
 #include "image/frame/channels.hpp"
 #include "image/picture/finite.hpp"
 #include "image/picture/picture.hpp"
@@ -128,9 +128,8 @@ struct FrameFile {
     std::optional<double> time, delta_time;    ///< seconds
     std::optional<float> exposure;             ///< what light is multiplied by before it is shown; above 0
     std::optional<std::uint64_t> frame_index;  ///< at most 2^53
-    FileKind kind = FileKind::OpenExr;
-    std::string color_said;                 ///< by what the file says which colours it has; empty: it does not
-    SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
+    std::string color_said;                    ///< by what the file says which colours it has; empty: it does not
+    SampleKind samples = SampleKind::Half;     ///< of the colour, in the file
     PixelCounts counts;
     std::vector<std::string> warnings;                ///< one line each, without the file name
     std::vector<std::string> channels;                ///< all that the file has, used or not

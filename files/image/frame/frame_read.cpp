@@ -8,11 +8,11 @@
 #include <limits>
 #include <numbers>
 
+#include "formats/exr/exr_check.hpp"
 #include "image/camera/camera_check.hpp"
 #include "image/camera/world_space.hpp"
 #include "image/color/configuration.hpp"
 #include "image/color/convert_picture.hpp"
-#include "image/exr/check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
@@ -94,7 +94,7 @@ std::optional<Matrix> FrameReader::world_to_camera() const {
 }
 
 bool FrameReader::are_halves(const ChannelSet& set, std::uint32_t components) const {
-    if (!options_.keeps_halves || decoder_.kind() != FileKind::OpenExr) return false;
+    if (!options_.keeps_halves || &decoder_.format() != &exr_format()) return false;
     for (std::uint32_t i = 0; i < components; ++i)
         if (set.channels[i] >= 0 && part(set).kinds[static_cast<std::size_t>(set.channels[i])] != SampleKind::Half)
             return false;
@@ -478,7 +478,6 @@ void FrameReader::read_time_of_file() {
 }
 
 Result<FrameFile> FrameReader::read() {
-    frame_.kind = decoder_.kind();
     frame_.channels = channel_names(decoder_.parts());
     DARKROOM_TRY_VALUE(found_, find_channels(decoder_.parts(), options_.names, options_.view));
     if (options_.view.empty() && found_.views.size() > 1)

@@ -34,10 +34,10 @@ void add_number(Imf::Header& header, const char* name, const std::optional<Numbe
 }  // namespace
 
 Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, std::size_t max_threads) {
-    DARKROOM_TRY_VALUE(const auto kind, file_kind(path));
-    if (kind != FileKind::OpenExr)
+    DARKROOM_TRY_VALUE(const FileFormat* const format, written_format(path));
+    if (format != &exr_format())
         return user_error(
-            fmt::format("{}: {} holds no depth and no camera; a frame needs .exr", path.string(), name_of(kind)));
+            fmt::format("{}: {} holds no depth and no camera; a frame needs .exr", path.string(), format->name));
     const std::size_t pixel_count = std::size_t{frame.color.width} * frame.color.height;
     if (pixel_count == 0) return user_error(fmt::format("{}: the frame is empty", path.string()));
     if (const auto checked = check_lights(frame.lights); !checked)

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/primaries.hpp"
-#include "decoders/file_kind.hpp"
+#include "formats/file_part.hpp"
 #include "image/exr/attributes.hpp"
 #include "image/frame/frame_file.hpp"
 

@@ -37,7 +37,7 @@ bool is_inside_display(const FilePart& part) {
 Result<> read_inside(Decoder& decoder, std::size_t number, std::vector<SamplePlace> places) {
     const FilePart& part = decoder.parts()[number];
     for (SamplePlace& place : places) place.first += part.y * place.row_bytes + part.x * place.pixel_bytes;
-    const std::uint32_t band = decoder.kind() == FileKind::OpenExr
+    const std::uint32_t band = &decoder.format() == &exr_format()
                                    ? part.height
                                    : decoder.band_rows(number, part.width * part.channels.size() * sizeof(float));
     for (std::uint32_t row = 0; row < part.height; row += band) {

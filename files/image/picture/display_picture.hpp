@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "image/color/color_coding.hpp"
+#include "formats/color_coding.hpp"
 #include "image/compare/flip.hpp"
 #include "image/frame/layer_file.hpp"
 #include "image/picture/picture.hpp"

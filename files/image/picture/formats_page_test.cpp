@@ -21,31 +21,10 @@
 namespace darkroom {
 namespace {
 
-/// As docs/formats.md lists them.
-struct Format {
-    FileKind kind;
-    std::string_view extension, files;
-    std::vector<std::string_view> compressions{};
+std::string name_of_file(const FileFormat& format) { return fmt::format("a{}", format.extensions.front()); }
 
-    [[nodiscard]] std::string_view name() const { return name_of(kind); }
-    [[nodiscard]] std::string file() const { return fmt::format("a{}", extension); }
-    [[nodiscard]] bool is_written(const WriteOptions& options) const {
-        return sample_kind(file(), options).has_value();
-    }
-};
-
-const std::vector<Format>& formats() {
-    static const std::vector<Format> rows{
-        {FileKind::OpenExr,
-         ".exr",
-         "`.exr`",
-         {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}},
-        {FileKind::Png, ".png", "`.png`", {"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12"}},
-        {FileKind::Jpeg, ".jpg", "`.jpg` `.jpeg`"},
-        {FileKind::Tiff, ".tif", "`.tif` `.tiff`", {"none", "packbits", "lzw", "zip"}},
-        {FileKind::Radiance, ".hdr", "`.hdr`"},
-        {FileKind::WebP, ".webp", "`.webp`"}};
-    return rows;
+bool is_written(const FileFormat& format, const WriteOptions& options) {
+    return sample_kind(name_of_file(format), options).has_value();
 }
 
 constexpr std::array depths{SampleKind::Integer8, SampleKind::Integer16, SampleKind::Half, SampleKind::Float};
@@ -54,8 +33,8 @@ constexpr const char* page_name = "/docs/formats.md";
 class ImageFormats : public WithFolder {
   protected:
     /// What comes back of numbers as files have them: code values, or light.
-    Picture back(const Format& format, const Picture& picture, const WriteOptions& options) {
-        const std::filesystem::path path = file(format.file());
+    Picture back(const FileFormat& format, const Picture& picture, const WriteOptions& options) {
+        const std::filesystem::path path = file(name_of_file(format));
         const Result<> done = write_picture(path, picture, options);
         EXPECT_TRUE(done) << done.error().text;
         auto frame = read_frame(path);
@@ -71,13 +50,15 @@ class ImageFormats : public WithFolder {
 
     /// The file's samples by the other library, row by row.
     void compare_with_openimageio(const std::filesystem::path& path, const FrameFile& frame) {
-        const auto library = codecs();
-        ASSERT_TRUE(library) << library.error().text;
         const auto bytes = read_file(path);
         ASSERT_TRUE(bytes);
-        const auto format = kind_of_file(*bytes);
-        ASSERT_TRUE(format);
-        const auto source = (*library)->open(*format, *bytes);
+        const auto found = format_of_file(*bytes);
+        ASSERT_TRUE(found);
+        const FileFormat& format = **found;
+        if (format.openimageio.empty()) return;  // has a test of its own by another program
+        const auto library = codecs();
+        ASSERT_TRUE(library) << library.error().text;
+        const auto source = (*library)->open(format, *bytes);
         ASSERT_TRUE(source) << source.error().text;
         const FilePart& part = (*source)->parts()[0];
         ASSERT_EQ(part.width, frame.color.width);
@@ -96,10 +77,9 @@ class ImageFormats : public WithFolder {
             const float ours = frame.color.pixels[i / channels * 4 + c];
             const float expected = is_integer(part.kinds[c]) && c < 3 ? srgb_decode(theirs[i]) : theirs[i];
             // They take a mantissa of Radiance for (m + 0.5) / 256; of JPEG each has a cosine transform of its own.
-            const float allowed = *format == FileKind::Jpeg
-                                      ? 0.02f
-                                      : (*format == FileKind::Radiance ? 5e-3f : 1e-6f) * std::abs(expected);
-            ASSERT_NEAR(ours, expected, std::max(allowed, 1e-6f)) << name_of(*format) << " " << i;
+            const float allowed =
+                format.name == "JPEG" ? 0.02f : (format.name == "Radiance HDR" ? 5e-3f : 1e-6f) * std::abs(expected);
+            ASSERT_NEAR(ours, expected, std::max(allowed, 1e-6f)) << format.name << " " << i;
         }
     }
 
@@ -110,17 +90,17 @@ class ImageFormats : public WithFolder {
         return out;
     }
 
-    std::string alpha_of(const Format& format, SampleKind kind) {
+    std::string alpha_of(const FileFormat& format, SampleKind kind) {
         WriteOptions options{.samples = kind, .alpha = true};
-        if (!sample_kind(file(format.file()), options)) return "none";
+        if (!sample_kind(file(name_of_file(format)), options)) return "none";
         const float kept = back(format, grey(0.5f, 0.25f), options).pixels[3];
-        EXPECT_NEAR(kept, 0.25f, 0.002f) << format.name();
+        EXPECT_NEAR(kept, 0.25f, 0.002f) << format.name;
         // Light over nothing: what is straight has no place for it.
         return back(format, grey(0.5f, 0), options).pixels[0] > 0 ? "multiplied" : "straight";
     }
 
     /// The largest number that comes back within a hundredth.
-    std::string most_of(const Format& format, SampleKind kind) {
+    std::string most_of(const FileFormat& format, SampleKind kind) {
         std::string out = "0";
         for (const auto& [value, shown] :
              {std::pair(1.0f, "1"), std::pair(65504.0f, "65504"), std::pair(1e6f, "1e6"), std::pair(1e38f, "1e38")})
@@ -129,7 +109,7 @@ class ImageFormats : public WithFolder {
     }
 
     /// Of smooth light between a quarter and one: how many bits of a number are right.
-    std::string bits_of(const Format& format, SampleKind kind, const std::string& compression = {}) {
+    std::string bits_of(const FileFormat& format, SampleKind kind, const std::string& compression = {}) {
         Picture ramp(64, 64);
         for (std::size_t i = 3; i < ramp.pixels.size(); i += 4) ramp.pixels[i] = 1;
         for (std::uint32_t y = 0; y < 64; ++y)
@@ -148,22 +128,22 @@ class ImageFormats : public WithFolder {
     }
 
     /// Noise comes back as it was at no compression, and at this one?
-    bool is_lossless(const Format& format, SampleKind kind, std::string_view compression) {
+    bool is_lossless(const FileFormat& format, SampleKind kind, std::string_view compression) {
         Picture noise(70, 40);
         std::mt19937 random(3);
         for (float& value : noise.pixels) value = static_cast<float>(random()) * 0x1p-32f;
         const auto with = [&](std::string_view name) {
             return back(
                 format, noise,
-                {.samples = kind, .alpha = format.is_written({.alpha = true}), .compression = std::string(name)});
+                {.samples = kind, .alpha = is_written(format, {.alpha = true}), .compression = std::string(name)});
         };
         return with(compression) == with(format.compressions.front());
     }
 
-    static std::string spaces_of(const Format& format, SampleKind kind) {
+    static std::string spaces_of(const FileFormat& format, SampleKind kind) {
         std::vector<std::string> out;
         for (const std::string_view name : {"srgb", "p3", "rec2020", "pq", "hlg"})
-            if (sample_kind(format.file(), {.samples = kind, .space = *find_output_space(name)}))
+            if (sample_kind(name_of_file(format), {.samples = kind, .space = *find_output_space(name)}))
                 out.push_back(name == "srgb" && !is_integer(kind) ? "Rec. 709" : fmt::format("`{}`", name));
         return fmt::format("{}", fmt::join(out, " "));
     }
@@ -182,11 +162,12 @@ class ImageFormats : public WithFolder {
         const auto shown = [](SampleKind kind) {
             return is_integer(kind) ? fmt::format("{}", 8 * size_of(kind)) : std::string(name_of(kind));
         };
-        for (const Format& format : formats()) {
+        for (const FileFormat* const row : all_formats()) {
+            const FileFormat& format = *row;
             std::vector<std::string> kinds;
             for (const SampleKind kind : depths)
-                if (format.is_written({.samples = kind})) kinds.push_back(shown(kind));
-            out += fmt::format("| {} | {} | {} |\n", format.name(), format.files,
+                if (is_written(format, {.samples = kind})) kinds.push_back(shown(kind));
+            out += fmt::format("| {} | `{}` | {} |\n", format.name, fmt::join(format.extensions, "` `"),
                                kinds.empty() ? "read alone" : fmt::format("{}", fmt::join(kinds, ", ")));
         }
         out +=
@@ -198,12 +179,13 @@ class ImageFormats : public WithFolder {
             "Bits: of a code, or of a float's size, that are right in smooth colours. Spaces: `--output-space`.\n\n"
             "| Format | `--bits` | Alpha | From | To | Bits | Spaces that it can be marked as "
             "|\n|---|---|---|---|---|---|---|\n";
-        for (const Format& format : formats())
+        for (const FileFormat* const row : all_formats())
             for (const SampleKind kind : depths) {
-                if (!format.is_written({.samples = kind})) continue;
+                const FileFormat& format = *row;
+                if (!is_written(format, {.samples = kind})) continue;
                 const float below = back(format, grey(-2), {.samples = kind}).pixels[0];
                 const std::string most = most_of(format, kind);
-                out += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", format.name(), shown(kind),
+                out += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", format.name, shown(kind),
                                    alpha_of(format, kind), below == -2 ? "-" + most : "0", most, bits_of(format, kind),
                                    spaces_of(format, kind));
             }
@@ -214,16 +196,17 @@ class ImageFormats : public WithFolder {
             "never changed: it gets a part of its own beside a picture of the second. JPEG changes numbers by "
             "`--quality`.\n\n"
             "| Format | `--bits` | Lossless | Changes numbers |\n|---|---|---|---|\n";
-        for (const Format& format : formats())
+        for (const FileFormat* const row : all_formats())
             for (const SampleKind kind : depths) {
-                if (!format.is_written({.samples = kind}) || format.compressions.empty()) continue;
+                const FileFormat& format = *row;
+                if (!is_written(format, {.samples = kind}) || format.compressions.empty()) continue;
                 std::vector<std::string> same, other;
                 for (const std::string_view name : format.compressions)
                     (is_lossless(format, kind, name) ? same : other).push_back(fmt::format("`{}`", name));
                 const auto list = [](const std::vector<std::string>& names) {
                     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, " "));
                 };
-                out += fmt::format("| {} | {} | {} | {} |\n", format.name(), shown(kind), list(same), list(other));
+                out += fmt::format("| {} | {} | {} | {} |\n", format.name, shown(kind), list(same), list(other));
             }
         return out;
     }

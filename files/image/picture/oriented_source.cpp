@@ -4,12 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstring>
-
-#include "decoders/exif.hpp"
-#include "image/webp/check.hpp"
 
 namespace darkroom {
 namespace {
@@ -108,58 +103,18 @@ class OrientedSource final : public PictureSource {
     std::vector<std::byte> samples_;
 };
 
-// Behind the header's empty line stands "-Y 3 +X 2": three lines from the top down (the axes point up and right), of
-// two pixels from left to right (Ward 1991, Real Pixels; the file filefmts.pdf of Radiance).
-Result<int> orientation_of_radiance(std::span<const std::byte> bytes, const FilePart& stored) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const std::size_t at = text.find("\n\n");
-    if (at == std::string_view::npos) return 1;
-    std::string_view line = text.substr(at + 2, 100);
-    line = line.substr(0, line.find('\n'));
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 8> orders{{{"-Y", "+X"},
-                                                                                   {"-Y", "-X"},
-                                                                                   {"+Y", "-X"},
-                                                                                   {"+Y", "+X"},
-                                                                                   {"+X", "-Y"},
-                                                                                   {"-X", "-Y"},
-                                                                                   {"-X", "+Y"},
-                                                                                   {"+X", "+Y"}}};
-    std::array<std::string_view, 4> words;
-    std::string_view rest = line;
-    for (std::string_view& word : words) {
-        rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-        word = rest.substr(0, rest.find(' '));
-        rest.remove_prefix(word.size());
-    }
-    const auto is_number = [](std::string_view word, std::uint32_t expected) {
-        std::uint32_t number = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-        return error == std::errc() && end == word.data() + word.size() && number == expected;
-    };
-    const auto found = std::ranges::find(orders, std::pair(words[0], words[2]));
-    if (found != orders.end() && is_number(words[1], stored.height) && is_number(words[3], stored.width))
-        return static_cast<int>(found - orders.begin()) + 1;
-    return user_error(fmt::format("\"{}\" for its axes: allowed is one of Y and X with a sign and a count each",
-                                  one_printable_line(line)));
-}
-
 }  // namespace
 
-Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, const PictureSource& source) {
-    if (kind == FileKind::OpenExr) return 1;
-    if (kind == FileKind::Radiance) return orientation_of_radiance(bytes, source.parts()[0]);
-    if (kind == FileKind::WebP) {
-        const Result<WebpPicture> picture = check_webp(bytes);
-        return picture ? orientation_of_exif(picture->exif) : 1;
-    }
+Result<int> orientation_of(const OpenedSource& opened, std::span<const std::byte> bytes) {
+    if (opened.format->orientation != nullptr) return opened.format->orientation(bytes, *opened.source);
     // Another number than these stands in files, and is taken as upright by all who show them.
-    const std::vector<double> found = source.numbers(0, "Orientation");
+    const std::vector<double> found = opened.source->numbers(0, "Orientation");
     return found.size() == 1 && found[0] >= 1 && found[0] <= 8 ? static_cast<int>(found[0]) : 1;
 }
 
 Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
     DARKROOM_TRY_VALUE(OpenedSource opened, open_source(bytes, max_threads, place));
-    DARKROOM_TRY_VALUE(const int orientation, orientation_of(opened.kind, bytes, *opened.source));
+    DARKROOM_TRY_VALUE(const int orientation, orientation_of(opened, bytes));
     if (orientation != 1) opened.source = std::make_unique<OrientedSource>(std::move(opened.source), orientation);
     return opened;
 }

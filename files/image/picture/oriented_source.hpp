@@ -9,7 +9,7 @@
 namespace darkroom {
 
 /// As EXIF numbers them, 1 to 8; 1 is upright, from 5 on rows are stored as columns.
-[[nodiscard]] Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, const PictureSource& source);
+[[nodiscard]] Result<int> orientation_of(const OpenedSource& opened, std::span<const std::byte> bytes);
 
 /// open_source, upright.
 [[nodiscard]] Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads = 0,

@@ -6,7 +6,7 @@
 #include <darkroom/result.hpp>
 #include <filesystem>
 
-#include "decoders/file_kind.hpp"
+#include "formats/file_part.hpp"
 
 namespace darkroom {
 

@@ -13,23 +13,22 @@
 #include <vector>
 
 #include "core/files.hpp"
-#include "decoders/file_kind.hpp"
-#include "decoders/picture_source.hpp"
+#include "formats/file_format.hpp"
 
 namespace darkroom {
 
 struct OpenedSource {
-    FileKind kind = FileKind::OpenExr;
+    const FileFormat* format = nullptr;
     std::unique_ptr<PictureSource> source;
 };
 
-/// Which kind of file the first 16 bytes (or fewer) belong to.
-[[nodiscard]] Result<FileKind> kind_of_file(std::span<const std::byte> start);
+/// Which format the first 16 bytes (or fewer) belong to.
+[[nodiscard]] Result<const FileFormat*> format_of_file(std::span<const std::byte> start);
 
 /// Bytes of an image file at most.
 inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
 
-/// The bytes of a file whose first ones are those of a known kind; no others are read to their end.
+/// The bytes of a file whose first ones are those of a known format; no others are read to their end.
 [[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path,
                                                              ReadFileOptions options = {});
 
@@ -38,7 +37,7 @@ enum class DecodingPlace {
     FramesHere,  ///< of OpenEXR the header here, and samples that are packed by ZIP or not at all: sequences are fast
 };
 
-/// Tells the kind of file by its content, checks its structure and its sizes, and opens it. The bytes outlive the
+/// Tells the format by its content, checks its structure and its sizes, and opens it. The bytes outlive the
 /// source. `max_threads` decode one picture, 0: as many as there are processors. Errors name no file.
 [[nodiscard]] Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads = 0,
                                                DecodingPlace place = DecodingPlace::Confined);

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -18,63 +16,18 @@
 #include "core/files.hpp"
 #include "core/text/lower.hpp"
 #include "image/codec/codecs.hpp"
-#include "image/codec/png_write.hpp"
-#include "image/color/color_coding.hpp"
-#include "image/color/icc_profile.hpp"
 #include "image/exr/write.hpp"
 #include "image/picture/alpha.hpp"
 
 namespace darkroom {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, FileKind>, 7> extensions{{{".png", FileKind::Png},
-                                                                           {".jpg", FileKind::Jpeg},
-                                                                           {".jpeg", FileKind::Jpeg},
-                                                                           {".tif", FileKind::Tiff},
-                                                                           {".tiff", FileKind::Tiff},
-                                                                           {".exr", FileKind::OpenExr},
-                                                                           {".hdr", FileKind::Radiance}}};
-
-struct Format {
-    std::span<const SampleKind> samples;  // the first is the default
-    bool has_alpha;
-    std::span<const std::string_view> compressions;  // by name
-};
-
-Format format_of(FileKind kind) {
-    using enum SampleKind;
-    static constexpr std::array png{Integer8, Integer16};
-    static constexpr std::array jpeg{Integer8};
-    static constexpr std::array tiff{Integer8, Integer16, Float};
-    static constexpr std::array exr{Half, Float};
-    static constexpr std::array radiance{Float};
-    static constexpr std::array<std::string_view, 13> levels{"0", "1", "2", "3",  "4",  "5", "6",
-                                                             "7", "8", "9", "10", "11", "12"};
-    static constexpr std::array<std::string_view, 4> tiff_names{"none", "packbits", "lzw", "zip"};
-    switch (kind) {
-        case FileKind::Png:
-            return {png, true, levels};
-        case FileKind::Jpeg:
-            return {jpeg, false, {}};
-        case FileKind::Tiff:
-            return {tiff, true, tiff_names};
-        case FileKind::OpenExr:
-            return {exr, true, exr_compressions};
-        case FileKind::Radiance:
-            return {radiance, false, {}};
-        case FileKind::WebP:
-            break;  // is not written
-    }
-    DARKROOM_ASSERT(false);
-    return {};
-}
-
-// JPEG has 16 bits for a side (ITU-T T.81); libpng refuses more than a million; the others have 31.
-Result<> check_size(const std::filesystem::path& path, FileKind kind, std::uint32_t width, std::uint32_t height) {
-    const std::uint32_t most = kind == FileKind::Jpeg ? 65500 : 65536;
+Result<> check_size(const std::filesystem::path& path, const FileFormat& format, std::uint32_t width,
+                    std::uint32_t height) {
+    const std::uint32_t most = format.max_side;
     if (width >= 1 && height >= 1 && width <= most && height <= most) return {};
     return user_error(fmt::format("{}: a picture of {}x{}; [1, {}] a side is allowed in {}", path.string(), width,
-                                  height, most, name_of(kind)));
+                                  height, most, format.name));
 }
 
 template <class T>
@@ -103,35 +56,36 @@ std::vector<float> floats(const Picture& picture, std::uint32_t channels, float 
     return values;
 }
 
-Result<> check_coding(const std::filesystem::path& path, FileKind kind, const WriteOptions& options) {
-    if (options.quality && kind != FileKind::Jpeg)
-        return user_error(fmt::format("{}: {} has no quality; .jpg has", path.string(), name_of(kind)));
+Result<> check_coding(const std::filesystem::path& path, const FileFormat& format, const WriteOptions& options) {
+    if (options.quality && !format.has_quality)
+        return user_error(fmt::format("{}: {} has no quality; .jpg has", path.string(), format.name));
     if (options.quality && (*options.quality < 1 || *options.quality > 100))
         return user_error(
             fmt::format("{}: a JPEG quality of {}; [1, 100] is allowed", path.string(), *options.quality));
-    if (!options.chroma.empty() && kind != FileKind::Jpeg)
-        return user_error(fmt::format("{}: {} has no chroma of its own; .jpg has", path.string(), name_of(kind)));
+    if (!options.chroma.empty() && !format.has_quality)
+        return user_error(fmt::format("{}: {} has no chroma of its own; .jpg has", path.string(), format.name));
     constexpr std::array<std::string_view, 3> chromas{"4:4:4", "4:2:2", "4:2:0"};
     if (!options.chroma.empty() && std::ranges::find(chromas, options.chroma) == chromas.end())
         return user_error(fmt::format("{}: chroma {} in JPEG; allowed: {}", path.string(),
                                       one_printable_line(options.chroma), fmt::join(chromas, ", ")));
-    const std::span<const std::string_view> known = format_of(kind).compressions;
+    const std::span<const std::string_view> known = format.compressions;
     if (options.compression.empty() || std::ranges::find(known, options.compression) != known.end()) return {};
     return user_error(fmt::format("{}: compression {} in {}; allowed: {}", path.string(),
-                                  one_printable_line(options.compression), name_of(kind),
+                                  one_printable_line(options.compression), format.name,
                                   known.empty() ? "none can be chosen" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
-Result<> check_space(const std::filesystem::path& path, FileKind kind, SampleKind samples,
+Result<> check_space(const std::filesystem::path& path, const FileFormat& format, SampleKind samples,
                      const WriteOptions& options) {
     if (!options.space) return {};
     const std::string_view name = options.space->name;
     if (options.view)
         return user_error(fmt::format("{}: {} cannot be given with a view of a display, which has its own space",
                                       path.string(), name));
-    if (kind != FileKind::Png && kind != FileKind::OpenExr && name != "srgb")
+    if (!format.has_color_space && name != "srgb")
         return user_error(
-            fmt::format("{}: {} cannot be marked as {}; .png .exr can", path.string(), name_of(kind), name));
+            fmt::format("{}: {} cannot be marked as {}; {} can", path.string(), format.name, name,
+                        written_extensions([](const FileFormat& other) { return other.has_color_space; })));
     if (samples == SampleKind::Integer8 && (name == "pq" || name == "hlg"))
         return user_error(fmt::format("{}: {} in 8 bits shows steps (ITU-R BT.2100 asks for 10); --bits 16 is allowed",
                                       path.string(), name));
@@ -147,84 +101,54 @@ std::optional<ColorState> color_of(const WriteOptions& options, SampleKind sampl
     return is_integer(samples) ? options.space->integers : options.space->floats;
 }
 
-Result<FileKind> file_kind(const std::filesystem::path& path) {
+Result<const FileFormat*> written_format(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
-    for (const auto& [known, kind] : extensions)
-        if (extension == known) return kind;
-    return user_error(fmt::format("{}: {}; .png .jpg .jpeg .tif .tiff .exr .hdr can be written", path.string(),
-                                  extension.empty() ? "no extension" : fmt::format("unknown extension {}", extension)));
+    for (const FileFormat* const format : all_formats())
+        if (!format->samples.empty() && std::ranges::find(format->extensions, extension) != format->extensions.end())
+            return format;
+    return user_error(fmt::format("{}: {}; {} can be written", path.string(),
+                                  extension.empty() ? "no extension" : fmt::format("unknown extension {}", extension),
+                                  written_extensions()));
 }
 
 Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options) {
-    DARKROOM_TRY_VALUE(const auto kind, file_kind(path));
-    const Format format = format_of(kind);
-    if (options.alpha && !format.has_alpha)
-        return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(kind)));
-    DARKROOM_TRY(check_coding(path, kind, options));
-    SampleKind samples = options.samples.value_or(format.samples.front());
+    DARKROOM_TRY_VALUE(const FileFormat* const format, written_format(path));
+    if (options.alpha && !format->has_alpha)
+        return user_error(fmt::format("{}: {} has no alpha; {} have", path.string(), format->name,
+                                      written_extensions([](const FileFormat& other) { return other.has_alpha; })));
+    DARKROOM_TRY(check_coding(path, *format, options));
+    SampleKind samples = options.samples.value_or(format->samples.front());
     // Eight bits show steps where the codes reach further than sRGB's.
-    if (!options.samples && kind == FileKind::Png && options.space && options.space->integers != srgb_color)
+    if (!options.samples && samples == SampleKind::Integer8 && format->has_color_space && options.space &&
+        options.space->integers != srgb_color)
         samples = SampleKind::Integer16;
-    DARKROOM_TRY(check_space(path, kind, samples, options));
+    DARKROOM_TRY(check_space(path, *format, samples, options));
     if (options.view && !is_integer(samples))
-        return user_error(fmt::format("{}: {} samples hold light, not a view of a display; .png .jpg .tif hold one",
-                                      path.string(), name_of(samples)));
-    if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
+        return user_error(fmt::format(
+            "{}: {} samples hold light, not a view of a display; {} hold one", path.string(), name_of(samples),
+            written_extensions([](const FileFormat& other) { return is_integer(other.samples.front()); })));
+    if (std::ranges::find(format->samples, samples) != format->samples.end()) return samples;
     std::string allowed;
-    for (const SampleKind known : format.samples)
+    for (const SampleKind known : format->samples)
         allowed += (allowed.empty() ? "" : ", ") + std::string(name_of(known));
     return user_error(
-        fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), name_of(kind), allowed));
+        fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), format->name, allowed));
 }
 
 namespace {
 
-/// Of codes of PQ.
-template <class Code>
-PngDesc::Light light_of(const EncodeDesc& desc, const ColorState& color) {
-    constexpr std::size_t last = std::numeric_limits<Code>::max();
-    const TransferCurve pq{TransferCurve::Kind::Pq};
-    std::vector<double> nits(last + 1);
-    for (std::size_t code = 0; code <= last; ++code)
-        nits[code] = pq.decode(static_cast<double>(code) / last) * double{color.white_nits};
-    const auto* const samples = static_cast<const Code*>(desc.samples);
-    const std::size_t pixels = std::size_t{desc.width} * desc.height;
-    Code brightest = 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const Code* const pixel = samples + i * desc.channels;
-        const Code own = std::max({pixel[0], pixel[1], pixel[2]});
-        brightest = std::max(brightest, own);
-        sum += nits[own];
-    }
-    return {.primaries = chromaticities_of(color.primaries),
-            .display_peak = double{color.peak_nits},
-            .max = nits[brightest],
-            .mean = sum / static_cast<double>(pixels)};
-}
+/// What a path and options ask for, checked: an EncodeDesc but for the samples.
+struct Written {
+    const FileFormat* format = nullptr;
+    EncodeDesc desc;
+};
 
-/// Samples of 8 or 16 bits, or floats, into any kind of file but OpenEXR.
-Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc, const WriteOptions& options) {
+/// Samples of 8 or 16 bits, or floats, into any format but OpenEXR.
+Result<> write_samples(const std::filesystem::path& path, const Written& to) {
     const auto encode = [&]() -> Result<std::vector<std::byte>> {
-        if (desc.file == FileKind::Png) {
-            PngDesc png{.width = desc.width,
-                        .height = desc.height,
-                        .channels = desc.channels,
-                        .bytes = static_cast<std::uint32_t>(size_of(desc.kind)),
-                        .samples = desc.samples,
-                        .is_srgb = options.view == nullptr};
-            if (const auto color = color_of(options, desc.kind); color && *color != srgb_color)
-                png.video_codes = video_codes_of(*color);
-            if (const auto color = color_of(options, desc.kind); color == p3_color)
-                png.profile = display_profile("Display P3", chromaticities_of(Primaries::P3));
-            if (const auto color = color_of(options, desc.kind); color && color->transfer == Transfer::Pq)
-                png.light = desc.kind == SampleKind::Integer8 ? light_of<std::uint8_t>(desc, *color)
-                                                              : light_of<std::uint16_t>(desc, *color);
-            if (!options.compression.empty()) png.level = std::stoi(options.compression);
-            return encode_png(png);
-        }
+        if (to.format->encode != nullptr) return to.format->encode(to.desc);
         DARKROOM_TRY_VALUE(const Codecs* const others, codecs());
-        return others->encode(desc);
+        return others->encode(*to.format, to.desc);
     };
     const auto bytes = encode();
     if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
@@ -309,29 +233,31 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
     return parts ? write_exr(path, *parts, options.max_threads) : failure(parts.error());
 }
 
-/// What the path and the options ask for, checked.
-Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-                            const WriteOptions& options) {
+Result<Written> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                         const WriteOptions& options) {
     DARKROOM_TRY_VALUE(const auto samples, sample_kind(path, options));
-    const FileKind kind = *file_kind(path);
-    DARKROOM_TRY(check_size(path, kind, width, height));
-    return EncodeDesc{.file = kind,
-                      .kind = samples,
-                      .width = width,
-                      .height = height,
-                      .channels = options.alpha ? 4U : 3U,
-                      .quality = options.quality,
-                      .chroma = options.chroma,
-                      .is_associated = options.alpha && !is_integer(samples),
-                      .compression = options.compression};
+    const FileFormat& format = **written_format(path);
+    DARKROOM_TRY(check_size(path, format, width, height));
+    Written out{.format = &format,
+                .desc = {.kind = samples,
+                         .width = width,
+                         .height = height,
+                         .channels = options.alpha ? 4U : 3U,
+                         .quality = options.quality,
+                         .chroma = options.chroma,
+                         .is_associated = options.alpha && !is_integer(samples),
+                         .compression = options.compression,
+                         .color = color_of(options, samples)}};
+    if (!options.space && options.view == nullptr) out.desc.color = srgb_color;
+    return out;
 }
 
 }  // namespace
 
 std::uint64_t clamped_by_compression(const std::filesystem::path& path, const Picture& picture,
                                      const WriteOptions& options) {
-    const Result<FileKind> kind = file_kind(path);
-    if (!kind || *kind != FileKind::OpenExr || !options.compression.starts_with("dwa")) return 0;
+    const auto format = written_format(path);
+    if (!format || *format != &exr_format() || !options.compression.starts_with("dwa")) return 0;
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < picture.pixels.size(); i += 4)
         count += std::any_of(&picture.pixels[i], &picture.pixels[i + 3],
@@ -341,11 +267,12 @@ std::uint64_t clamped_by_compression(const std::filesystem::path& path, const Pi
 
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
     DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);
-    DARKROOM_TRY_VALUE(EncodeDesc desc, describe(path, picture.width, picture.height, options));
-    if (desc.file == FileKind::OpenExr) return write_floats(path, picture, desc.kind, options);
+    DARKROOM_TRY_VALUE(Written to, describe(path, picture.width, picture.height, options));
+    EncodeDesc& desc = to.desc;
+    if (to.format == &exr_format()) return write_floats(path, picture, desc.kind, options);
     const auto write = [&](const auto& samples) {
         desc.samples = samples.data();
-        return write_samples(path, desc, options);
+        return write_samples(path, to);
     };
     const auto write_integers = [&](const Picture& encoded) {
         return desc.kind == SampleKind::Integer8 ? write(integers<std::uint8_t>(encoded, desc.channels))
@@ -359,12 +286,7 @@ Result<> write_picture(const std::filesystem::path& path, const Picture& picture
         return write_integers(made);
     }
     if (is_integer(desc.kind)) return write_integers(picture);
-    // Radiance: no negative values, and a shared exponent of at most 2^127.
-    constexpr float largest_radiance = 1.7e38f;
-    constexpr float largest_float = std::numeric_limits<float>::max();
-    const bool is_radiance = desc.file == FileKind::Radiance;
-    return write(floats(picture, desc.channels, is_radiance ? 0 : -largest_float,
-                        is_radiance ? largest_radiance : largest_float));
+    return write(floats(picture, desc.channels, to.format->least, to.format->most));
 }
 
 Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
@@ -372,13 +294,13 @@ Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std
     DARKROOM_ASSERT(rgba.size() == std::size_t{width} * height * 4);
     WriteOptions bytes = options;
     bytes.samples = SampleKind::Integer8;
-    DARKROOM_TRY_VALUE(EncodeDesc desc, describe(path, width, height, bytes));
-    desc.samples = rgba.data();
-    if (options.alpha) return write_samples(path, desc, options);
+    DARKROOM_TRY_VALUE(Written to, describe(path, width, height, bytes));
+    to.desc.samples = rgba.data();
+    if (options.alpha) return write_samples(path, to);
     std::vector<std::uint8_t> opaque(rgba.size() / 4 * 3);
     for (std::size_t i = 0; i < rgba.size() / 4; ++i) std::copy_n(&rgba[4 * i], 3, &opaque[3 * i]);
-    desc.samples = opaque.data();
-    return write_samples(path, desc, options);
+    to.desc.samples = opaque.data();
+    return write_samples(path, to);
 }
 
 }  // namespace darkroom

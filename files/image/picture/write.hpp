@@ -46,8 +46,8 @@ struct WriteOptions {
     std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
 };
 
-/// The kind that a path's extension asks for. Known: .png .jpg .jpeg .tif .tiff .exr .hdr, in any case.
-[[nodiscard]] Result<FileKind> file_kind(const std::filesystem::path& path);
+/// The format that a path's extension, in any case, asks for.
+[[nodiscard]] Result<const FileFormat*> written_format(const std::filesystem::path& path);
 
 /// The kind of samples that would be written; an error if the format cannot hold what the options ask for, or knows no
 /// such quality or compression. Lets a program refuse before it has computed the picture.
@@ -66,7 +66,8 @@ struct WriteOptions {
 [[nodiscard]] Result<> write_picture(const std::filesystem::path& path, const Picture& picture,
                                      const WriteOptions& options = {});
 
-/// The same for four bytes a pixel, already encoded, into PNG, JPEG or TIFF. `rgba.size()` must be width * height * 4.
+/// The same for four bytes a pixel, already encoded, into a format of integers. `rgba.size()` must be width * height
+/// * 4.
 [[nodiscard]] Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                                    std::span<const std::uint8_t> rgba, const WriteOptions& options = {});
 

@@ -44,7 +44,7 @@ Result<Files> files_of_folder(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         std::error_code ignored;
-        if (entry->is_regular_file(ignored) && darkroom::file_kind(entry->path()))
+        if (entry->is_regular_file(ignored) && darkroom::written_format(entry->path()))
             files.emplace(entry->path().filename().string(), entry->path());
     }
     if (error)

@@ -11,6 +11,7 @@
 
 #include "core/text/param_text.hpp"
 #include "develop/developer.hpp"
+#include "formats/exr/exr.hpp"
 #include "image/color/output_space.hpp"
 #include "image/frame/sequence.hpp"
 #include "image/picture/alpha.hpp"
@@ -102,8 +103,8 @@ darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
 
 /// What of an OpenEXR frame's attributes a picture in OpenEXR does not repeat.
 void tell_of_dropped(const darkroom::FrameFile& frame, const std::filesystem::path& output, std::string_view shown) {
-    const darkroom::Result<darkroom::FileKind> kind = darkroom::file_kind(output);
-    if (!kind || *kind != darkroom::FileKind::OpenExr || !frame.attributes || frame.attributes->dropped().empty())
+    const auto format = darkroom::written_format(output);
+    if (!format || *format != &darkroom::exr_format() || !frame.attributes || frame.attributes->dropped().empty())
         return;
     const std::string names = fmt::format("{}", fmt::join(frame.attributes->dropped(), ", "));
     warn(fmt::format("{}: its {} may not be true of a picture made of it, and is left out", shown,
@@ -168,7 +169,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
     for (const std::filesystem::path& output : job.stream ? Paths() : outputs) {
         DARKROOM_TRY_VALUE(const darkroom::SampleKind samples, darkroom::sample_kind(output, job.write));
-        if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
+        if (options.keeps_layers && *darkroom::written_format(output) != &darkroom::exr_format())
             return no_place_for_layers(output);
         job.develop.target = target_for(samples, job.write);
         job.develop.color = darkroom::color_of(job.write, samples);
@@ -543,12 +544,13 @@ static Command add_develop(CommandFlags program, std::span<const darkroom::LookE
         "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
         "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
     command
-        .add_option("INPUT", options->inputs, "Frames (EXR, HDR, PNG, JPEG, TIFF); ####, %04d or $F4 for all numbers")
+        .add_option("INPUT", options->inputs, "Frames or pictures; ####, %04d or $F4 for all numbers")
         .required();
     command
         .add_option("-o,--output,--out", options->out,
-                    "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
-                    "{name}; - is standard output, with --format")
+                    fmt::format("The picture: {}. For several inputs a folder, or a name with %04d, #### or "
+                                "{{name}}; - is standard output, with --format",
+                                darkroom::written_extensions()))
         .type_name("OUT")
         .required();
     command

@@ -51,7 +51,7 @@ struct Head {
     }
 };
 
-bool is_picture(const Head& head) { return darkroom::kind_of_file(std::as_bytes(std::span(head.start))).has_value(); }
+bool is_picture(const Head& head) { return darkroom::format_of_file(std::as_bytes(std::span(head.start))).has_value(); }
 
 bool is_model(const Head& head) { return head.start.starts_with("glTF") || head.first_line().starts_with('{'); }
 
@@ -70,7 +70,7 @@ bool is_table(const Head& head) {
 }
 
 struct Kind {
-    std::string_view name;
+    std::string name;
     bool (*is)(const Head& head);
     std::function<Result<Json>(const fs::path& path)> tell;
 };
@@ -82,7 +82,7 @@ std::array<Kind, 4> kinds_of(const Options& options) {
         return info::toml(path, allows, named);
     };
     const auto model = [named](const fs::path& path) { return info::model(path, named); };
-    return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)", is_picture, info::picture},
+    return {Kind{fmt::format("a picture ({})", darkroom::format_names()), is_picture, info::picture},
             Kind{"a model (glTF)", is_model, model},
             Kind{"a colour table (.cube, .3dl, .spi1d, .spi3d, .csp, .clf)", is_table, info::table},
             Kind{"a scene or a look (TOML)", is_toml, toml}};

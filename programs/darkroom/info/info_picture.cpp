@@ -82,7 +82,7 @@ Result<Json> file_of(const std::filesystem::path& path) {
     const auto parts = file.decoder().parts();
     std::error_code ignored;
     Json out{{"kind", "picture"},
-             {"format", darkroom::name_of(file.decoder().kind())},
+             {"format", file.decoder().format().name},
              {"bytes", std::filesystem::file_size(path, ignored)},
              {"size", {parts.front().display_width, parts.front().display_height}},
              {"parts", parts_of(parts)}};

@@ -10,6 +10,7 @@
 
 #include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
+#include "formats/exr/exr.hpp"
 #include "image/frame/sequence.hpp"
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
@@ -33,8 +34,9 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
     command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)").required();
     command
         .add_option("-o,--output,--out", out_,
-                    "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d; - is standard output, "
-                    "with --format")
+                    fmt::format("The picture: {}; for several frames a name with %04d; - is standard output, "
+                                "with --format",
+                                darkroom::written_extensions()))
         .type_name("OUT")
         .capture_default();
     command
@@ -121,8 +123,8 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
     if (is_many && !darkroom::has_number_pattern(out_) && out_ != stream_name)
         return user_error(fmt::format("-o {}: {} frames need a name with %04d", printable(out_), shots.size()));
     if (frame_) {
-        const Result<darkroom::FileKind> kind = darkroom::file_kind(*frame_);
-        if (!kind || *kind != darkroom::FileKind::OpenExr)
+        const auto format = darkroom::written_format(*frame_);
+        if (!format || *format != &darkroom::exr_format())
             return user_error(fmt::format("--save-frame {}: a frame is an .exr file", printable(*frame_)));
         if (is_many && !darkroom::has_number_pattern(*frame_))
             return user_error(

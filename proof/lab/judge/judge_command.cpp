@@ -222,7 +222,7 @@ Result<std::map<long long, fs::path>> pictures_of(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         std::error_code ignored;
         const std::optional<long long> number = darkroom::frame_number(entry->path());
-        if (!number || !entry->is_regular_file(ignored) || !darkroom::file_kind(entry->path())) continue;
+        if (!number || !entry->is_regular_file(ignored) || !darkroom::written_format(entry->path())) continue;
         if (const auto [found, is_new] = out.emplace(*number, entry->path()); !is_new)
             return user_error(fmt::format("{}: {} and {} are both frame {}", printable(folder.string()),
                                           printable(found->second.filename().string()),
