@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 #include <exception>
 #include <mutex>
@@ -16,7 +14,6 @@
 #include <type_traits>
 
 #include "core/program_module.hpp"
-#include "core/text/lower.hpp"
 #include "image/codec/codecs.hpp"
 
 namespace darkroom {
@@ -85,50 +82,6 @@ Result<> flat(const OIIO::ImageSpec& spec) {
     return {};
 }
 
-/// What a header of Radiance says of its numbers, which OpenImageIO passes over (Ward, filefmts.pdf): they were
-/// multiplied by all EXPOSUREs and COLORCORRs. Light of the file is `scale` times the samples.
-struct RadianceHeader {
-    std::array<float, 3> scale{1, 1, 1};
-    std::vector<double> primaries;  ///< x and y of red, green, blue and white
-};
-
-std::vector<double> numbers_behind(std::string_view text) {
-    std::vector<double> out;
-    while (out.size() < 9) {
-        text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-        double number = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-        if (error != std::errc()) return out;
-        out.push_back(number);
-        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    }
-    return out;
-}
-
-RadianceHeader radiance_header(std::span<const std::byte> bytes) {
-    RadianceHeader out;
-    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    std::array<double, 3> scale{1, 1, 1};
-    while (true) {
-        const std::size_t end = text.find('\n');
-        if (end == 0 || end == std::string_view::npos) break;
-        const std::string_view line = text.substr(0, end);
-        text.remove_prefix(end + 1);
-        const std::size_t equals = std::min(line.find('='), line.size());
-        const std::string_view name = line.substr(0, equals);
-        if (name != "EXPOSURE" && name != "COLORCORR" && name != "PRIMARIES") continue;
-        const std::vector<double> found = numbers_behind(line.substr(std::min(equals + 1, line.size())));
-        if (name == "PRIMARIES" && found.size() == 8) out.primaries = found;
-        if (name == "EXPOSURE" && found.size() == 1)
-            for (double& value : scale) value /= found[0];
-        if (name == "COLORCORR" && found.size() == 3)
-            for (std::size_t i = 0; i < 3; ++i) scale[i] /= found[i];
-    }
-    for (std::size_t i = 0; i < 3; ++i)
-        if (const auto value = static_cast<float>(scale[i]); std::isfinite(value) && value > 0) out.scale[i] = value;
-    return out;
-}
-
 class OiioSource final : public PictureSource {
   public:
     static Result<std::unique_ptr<PictureSource>> open(const FileFormat& format, std::span<const std::byte> bytes) {
@@ -153,7 +106,6 @@ class OiioSource final : public PictureSource {
         part.display_height = part.height;
         part.is_associated =
             out->spec_.alpha_channel >= 0 && out->spec_.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-        if (format.openimageio == "hdr") out->header_ = radiance_header(bytes);
         part.channels.resize(static_cast<std::size_t>(out->spec_.nchannels));
         for (int channel = 0; channel < out->spec_.nchannels; ++channel) {
             const auto sample_kind = sample_kind_of(out->spec_.channelformat(channel));
@@ -167,7 +119,6 @@ class OiioSource final : public PictureSource {
     }
 
     std::vector<double> numbers(std::size_t /*part*/, std::string_view attribute) const override {
-        if (lower(attribute) == "chromaticities" && !header_.primaries.empty()) return header_.primaries;
         const OIIO::ParamValue* const found = spec_.find_attribute(std::string(attribute));
         if (found == nullptr) return {};
         std::vector<double> values(static_cast<std::size_t>(found->type().basevalues()));
@@ -192,7 +143,6 @@ class OiioSource final : public PictureSource {
     std::vector<std::string> attributes(std::size_t /*part*/) const override {
         std::vector<std::string> names;
         for (const OIIO::ParamValue& value : spec_.extra_attribs) names.push_back(value.name().string());
-        if (!header_.primaries.empty()) names.emplace_back("chromaticities");
         return names;
     }
 
@@ -222,16 +172,6 @@ class OiioSource final : public PictureSource {
                                           spec_.height, reason()));
         for (const SamplePlace& place : places) {
             const std::byte* from = samples_.data() + (place.channel - least->channel) * size;
-            // Whoever scaled the light for a picture wrote down by how much.
-            const float scale = place.channel < 3 ? header_.scale[place.channel] : 1;
-            if (scale != 1 && kind == SampleKind::Float)
-                for (std::size_t i = 0; i < width * rows; ++i) {
-                    float value = 0;
-                    std::memcpy(&value, from + i * pixel, sizeof value);
-                    value *= scale;
-                    std::memcpy(samples_.data() + (place.channel - least->channel) * size + i * pixel, &value,
-                                sizeof value);
-                }
             for (std::uint32_t y = 0; y < rows; ++y) {
                 std::byte* to = place.first + static_cast<std::ptrdiff_t>(y) * place.row_bytes;
                 for (std::size_t x = 0; x < width; ++x, from += pixel, to += place.pixel_bytes)
@@ -249,7 +189,6 @@ class OiioSource final : public PictureSource {
     std::unique_ptr<OIIO::Filesystem::IOProxy> memory_;
     OIIO::ImageInput::unique_ptr input_;  // after `memory_`, which it reads from until it is destroyed
     OIIO::ImageSpec spec_;
-    RadianceHeader header_;
     std::vector<std::byte> samples_;
 };
 
@@ -315,10 +254,7 @@ T guarded(T (*work)(Arguments...), std::string_view doing, std::type_identity_t<
 extern "C" DARKROOM_MODULE_EXPORT const darkroom::Codecs* darkroom_oiio_codecs() {
     using namespace darkroom;
     static const Codecs codecs{
-        .prepare =
-            [] {
-                for (const char* const name : {"tiff", "hdr"}) static_cast<void>(OIIO::ImageInput::create(name));
-            },
+        .prepare = [] { static_cast<void>(OIIO::ImageInput::create("tiff")); },
         .open =
             [](const FileFormat& format, std::span<const std::byte> bytes) {
                 return guarded(OiioSource::open, "cannot be decoded", format, bytes);

@@ -268,23 +268,24 @@ TEST_F(CliPictureMeaning, EveryPairOfBitsAndKindOfTiffIsReadRightOrRefusedByName
 
 // Ward: a picture's numbers were multiplied by every EXPOSURE and COLORCORR of its header.
 TEST_F(CliPictureMeaning, RadianceIsReadAsItsHeaderSays) {
-    const std::string pixels("\x80\x40\x20\x81\xff\x01\x00\x80", 8);  // two pixels, m / 256 * 2^(e - 128)
+    const std::string pixels("\x80\x40\x20\x81\xff\x01\x00\x80", 8);  // two pixels, (m + 0.5) / 256 * 2^(e - 128)
     const auto red = [&](const std::string& name, const std::string& lines) {
         write(name, "#?RADIANCE\n" + lines + "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + pixels);
         const std::vector<float> found = light(name);
         return std::array<float, 3>{found[0], found[1], found[2]};
     };
     using Light = std::array<float, 3>;
-    EXPECT_EQ(red("plain.hdr", ""), (Light{1, 0.5f, 0.25f})) << "the mantissa is m / 256";
-    EXPECT_EQ(red("one.hdr", "EXPOSURE=0.5\n"), (Light{2, 1, 0.5f}));
-    EXPECT_EQ(red("two.hdr", "EXPOSURE= 0.5\nEXPOSURE=4\n"), (Light{0.5f, 0.25f, 0.125f}));
-    EXPECT_EQ(red("corrected.hdr", "COLORCORR=2 1 0.5\n"), (Light{0.5f, 0.5f, 0.5f}));
-    EXPECT_EQ(red("wrong.hdr", "EXPOSURE=0\nCOLORCORR=1 2\n"), (Light{1, 0.5f, 0.25f}));
+    constexpr float r = 128.5f / 128, g = 64.5f / 128, b = 32.5f / 128;
+    EXPECT_EQ(red("plain.hdr", ""), (Light{r, g, b})) << "the mantissa is (m + 0.5) / 256";
+    EXPECT_EQ(red("one.hdr", "EXPOSURE=0.5\n"), (Light{2 * r, 2 * g, 2 * b}));
+    EXPECT_EQ(red("two.hdr", "EXPOSURE= 0.5\nEXPOSURE=4\n"), (Light{r / 2, g / 2, b / 2}));
+    EXPECT_EQ(red("corrected.hdr", "COLORCORR=2 1 0.5\n"), (Light{r / 2, g, 2 * b}));
+    EXPECT_EQ(red("wrong.hdr", "EXPOSURE=0\nCOLORCORR=1 2\n"), (Light{r, g, b}));
     // The primaries of Rec. 709 change nothing; with red and blue for each other, red and blue are.
     const Light same = red("same.hdr", "PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n");
     const Light turned = red("turned.hdr", "PRIMARIES=0.15 0.06 0.3 0.6 0.64 0.33 0.3127 0.329\n");
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(same[i], (Light{1, 0.5f, 0.25f})[i], 1e-5f);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(turned[i], (Light{0.25f, 0.5f, 1})[i], 1e-5f);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(same[i], (Light{r, g, b})[i], 1e-5f);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(turned[i], (Light{b, g, r})[i], 1e-5f);
 }
 
 TEST_F(CliPictureMeaning, JpegOfHighQualityKeepsRedAndBlueAtFullResolution) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What OpenImageIO does here: Radiance and rare TIFF files are read by it, JPEG, TIFF and Radiance written, pictures
+// What OpenImageIO does here: rare TIFF files are read by it, JPEG and TIFF written, pictures
 // resampled. It brings some 250 shared libraries, which take five times as long to load as the program; so it is a
 // module of its own, loaded when it is first needed, and this is all that both sides know of each other.
 

@@ -30,7 +30,7 @@ namespace {
 using Source = Result<std::unique_ptr<PictureSource>>;
 
 Source open_here(const FileFormat& format, std::span<const std::byte> bytes) {
-    if (format.name == "OpenEXR" || format.name == "WebP") return format.open(bytes, 1);
+    if (format.name != "PNG" && format.name != "JPEG" && format.name != "TIFF") return format.open(bytes, 1);
     DARKROOM_TRY_VALUE(const auto library, codecs());
     return library->open(format, bytes);
 }

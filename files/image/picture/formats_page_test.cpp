@@ -76,7 +76,7 @@ class ImageFormats : public WithFolder {
             const std::size_t c = i % channels;
             const float ours = frame.color.pixels[i / channels * 4 + c];
             const float expected = is_integer(part.kinds[c]) && c < 3 ? srgb_decode(theirs[i]) : theirs[i];
-            // They take a mantissa of Radiance for (m + 0.5) / 256; of JPEG each has a cosine transform of its own.
+            // They take a mantissa of Radiance for m / 256; of JPEG each has a cosine transform of its own.
             const float allowed =
                 format.name == "JPEG" ? 0.02f : (format.name == "Radiance HDR" ? 5e-3f : 1e-6f) * std::abs(expected);
             ASSERT_NEAR(ours, expected, std::max(allowed, 1e-6f)) << format.name << " " << i;
@@ -176,7 +176,10 @@ class ImageFormats : public WithFolder {
             "by\n"
             "it, which alone keep light where alpha is 0. From and to: the numbers that the file holds, others are "
             "clamped.\n"
-            "Bits: of a code, or of a float's size, that are right in smooth colours. Spaces: `--output-space`.\n\n"
+            "Bits: of a code, or of a float's size, that are right in smooth colours. Spaces: `--output-space`.\n"
+            "A mantissa m of Radiance HDR is (m + 0.5) / 256, as Radiance, libvips and Blender have it; OpenImageIO "
+            "and\n"
+            "OpenCV have m / 256, half a step darker.\n\n"
             "| Format | `--bits` | Alpha | From | To | Bits | Spaces that it can be marked as "
             "|\n|---|---|---|---|---|---|---|\n";
         for (const FileFormat* const row : all_formats())
