@@ -83,8 +83,12 @@ class CubeParser {
     Result<> read_line(std::string_view line) {
         if (line.empty()) return {};
         if (line.starts_with('#')) {
-            if (rows_ == 0 && out_.comments.size() < max_comments)
-                out_.comments.emplace_back(trimmed(one_line(line.substr(1))));
+            const std::string comment(trimmed(one_line(line.substr(1))));
+            // As write_cube() has it beside two tables.
+            if (rows_ == 0 && out_.title.empty() && comment.starts_with("TITLE \""))
+                out_.title = without_quotes(comment.substr(6));
+            else if (rows_ == 0 && out_.comments.size() < max_comments)
+                out_.comments.push_back(comment);
             return {};
         }
         const std::vector<std::string_view> words = words_of(line);
@@ -109,11 +113,15 @@ class CubeParser {
     }
 
     // Quotes belong to the format; some programs leave them out.
+    static std::string without_quotes(std::string_view text) {
+        if (text.size() >= 2 && text.starts_with('"') && text.ends_with('"')) text = text.substr(1, text.size() - 2);
+        return std::string(text);
+    }
+
     Result<> read_title(std::string_view text) {
         if (title_line_ != 0) return refuse(fmt::format("TITLE: is in line {} already, once is allowed", title_line_));
         title_line_ = line_;
-        if (text.size() >= 2 && text.starts_with('"') && text.ends_with('"')) text = text.substr(1, text.size() - 2);
-        out_.title = one_line(text);
+        out_.title = one_line(without_quotes(text));
         return {};
     }
 
@@ -291,9 +299,10 @@ Result<std::string> write_cube(const TableFile& file) {
     const ColorTable& table = file.table;
     fmt::memory_buffer out;
     const auto to = std::back_inserter(out);
-    if (!file.title.empty()) fmt::format_to(to, "TITLE \"{}\"\n", one_line(file.title));
-    for (const std::string& comment : file.comments) fmt::format_to(to, "# {}\n", one_line(comment));
     const bool has_both = table.shaper_size > 0 && table.size > 0;
+    // OpenColorIO refuses a title in the form with two tables, which Resolve writes without one.
+    if (!file.title.empty()) fmt::format_to(to, "{}TITLE \"{}\"\n", has_both ? "# " : "", one_line(file.title));
+    for (const std::string& comment : file.comments) fmt::format_to(to, "# {}\n", one_line(comment));
     for (const auto& [name, size, min, max] : {std::tuple("1D", table.shaper_size, table.shaper_min, table.shaper_max),
                                                std::tuple("3D", table.size, table.min, table.max)}) {
         if (size == 0) continue;

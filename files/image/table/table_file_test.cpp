@@ -131,6 +131,36 @@ TEST_F(ImageTables, ChainsAreSampledAndSayHowWell) {
     EXPECT_NEAR(*found->error, worst(table, *chain), 0.5 * *found->error);
 }
 
+TEST_F(ImageTables, WhatIsWrittenIsReadByOpenColorIo) {
+    std::mt19937 random(4);
+    const auto fill = [&](std::vector<float>& entries, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) entries.push_back(static_cast<float>(random() >> 8U) * 0x1p-24f);
+    };
+    for (const bool has_title : {false, true})
+        for (const std::uint32_t shaper : {0u, 7u})
+            for (const std::uint32_t size : {0u, 5u})
+                for (const float most : {1.0f, 3.0f}) {
+                    if (shaper + size == 0) continue;
+                    TableFile file{.title = has_title ? "a title" : "", .comments = {"a comment"}};
+                    ColorTable& table = file.table;
+                    table.shaper_size = shaper;
+                    table.size = size;
+                    fill(table.shaper, std::size_t{3} * shaper);
+                    fill(table.cube, std::size_t{3} * size * size * size);
+                    (shaper > 0 ? table.shaper_max : table.max).fill(most);
+                    const Result<std::string> text = write_cube(file);
+                    ASSERT_TRUE(text) << text.error().text;
+                    const auto path = write("a.cube", *text);
+                    const auto chain = chain_of(path);
+                    ASSERT_TRUE(chain) << *text;
+                    EXPECT_LT(worst(table, *chain), 1e-5) << text->substr(0, 200);
+                    const Result<FoundTable> back = read_table_file(path);
+                    ASSERT_TRUE(back) << back.error().text;
+                    EXPECT_EQ(back->file.table.cube, table.cube);
+                    EXPECT_EQ(back->file.table.shaper, table.shaper);
+                }
+}
+
 TEST_F(ImageTables, WhatIsNoTableIsOneLine) {
     const std::array files{
         std::pair(write("bomb.spi1d", "Version 1\nFrom 0 1\nLength 100000000000\nComponents 1\n{\n0\n1\n}\n"),
