@@ -23,7 +23,8 @@ const std::vector<std::string> look_files{".toml"};
 std::vector<std::string> extensions_of(FileKind kind) {
     switch (kind) {
         case FileKind::Table:
-            return {".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf", ".ctf", ".png", ".tif", ".exr"};
+            return {".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf", ".ctf",
+                    ".lut",  ".itx", ".cub",   ".png",   ".tif", ".exr"};
         case FileKind::Picture:
             return {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr"};
         case FileKind::Document:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <optional>
 #include <vector>
@@ -15,7 +16,7 @@ namespace {
 
 using Color = std::array<float, 3>;
 
-constexpr std::uint32_t usual_cube_size = 65, usual_shaper_size = 4096;
+constexpr std::uint32_t usual_cube_size = 65, usual_shaper_size = 4096, max_shaper_size = 65536;
 
 /// Of a step that scales and shifts every channel by itself: out = in * scale + offset.
 struct Affine {
@@ -53,11 +54,28 @@ std::optional<Affine> affine_of(const ocio::ConstTransformRcPtr& step) {
     return out;
 }
 
-/// A 1D table whose entries are spread evenly over [0, 1].
-ocio::ConstLut1DTransformRcPtr plain_lut_of(const ocio::ConstTransformRcPtr& step) {
+/// A 1D table, forward.
+ocio::ConstLut1DTransformRcPtr lut1d_of(const ocio::ConstTransformRcPtr& step) {
     const auto lut = ocio::DynamicPtrCast<const ocio::Lut1DTransform>(step);
-    const bool is_plain = lut && lut->getDirection() == ocio::TRANSFORM_DIR_FORWARD && !lut->getInputHalfDomain();
-    return is_plain ? lut : nullptr;
+    return lut && lut->getDirection() == ocio::TRANSFORM_DIR_FORWARD ? lut : nullptr;
+}
+
+/// What is clamped at both ends, and how it is scaled between them.
+struct Clamp {
+    double min = 0, max = 0;
+    Affine affine;
+};
+std::optional<Clamp> clamp_of(const ocio::ConstTransformRcPtr& step) {
+    const auto range = ocio::DynamicPtrCast<const ocio::RangeTransform>(step);
+    if (!range || range->getDirection() != ocio::TRANSFORM_DIR_FORWARD || range->getStyle() != ocio::RANGE_CLAMP ||
+        !range->hasMinInValue() || !range->hasMaxInValue() || !(range->getMinInValue() < range->getMaxInValue()))
+        return std::nullopt;
+    Clamp out{.min = range->getMinInValue(), .max = range->getMaxInValue()};
+    const double scale = (range->getMaxOutValue() - range->getMinOutValue()) / (out.max - out.min);
+    if (!(scale > 0)) return std::nullopt;
+    out.affine.scale.fill(scale);
+    out.affine.offset.fill(range->getMinOutValue() - out.min * scale);
+    return out;
 }
 
 class Chain final : public ColorChain {
@@ -104,19 +122,9 @@ class Chain final : public ColorChain {
         while (split < all.size() && !processor_of(all.subspan(split, 1))->hasChannelCrosstalk()) ++split;
         const Steps before = all.first(split), behind = all.subspan(split);
         ColorTable table;
-        Affine affine;
-        std::size_t scales = 0;
-        for (; scales < before.size(); ++scales) {
-            const std::optional<Affine> next = affine_of(before[scales]);
-            if (!next) break;
-            affine = affine.then(*next);
-        }
-        std::array<float, 3> min{}, max{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            min[i] = affine.input(i, 0);
-            max[i] = affine.input(i, 1);
-        }
         const auto lut3d = behind.empty() ? nullptr : ocio::DynamicPtrCast<const ocio::Lut3DTransform>(behind.front());
+        std::size_t scales = 0;
+        auto [min, max, length] = inputs_of(before, scales, lut3d != nullptr);
         if (behind.empty() || scales < before.size() || (!before.empty() && !lut3d)) {
             // One range for all channels where a cube follows, which is what .cube can say.
             if (!behind.empty()) {
@@ -125,7 +133,7 @@ class Chain final : public ColorChain {
             }
             table.shaper_min = min;
             table.shaper_max = max;
-            sample_shaper(table, before, scales);
+            sample_shaper(table, before, length);
             min.fill(lut3d ? 0.0f : *std::ranges::min_element(table.shaper));
             max.fill(lut3d ? 1.0f : *std::ranges::max_element(table.shaper));
             if (!(min[0] < max[0])) max.fill(min[0] + 1);
@@ -133,22 +141,109 @@ class Chain final : public ColorChain {
         if (behind.empty()) return table;
         table.min = min;
         table.max = max;
-        const bool is_table = lut3d && lut3d->getDirection() == ocio::TRANSFORM_DIR_FORWARD;
-        table.size = is_table ? static_cast<std::uint32_t>(lut3d->getGridSize()) : usual_cube_size;
+        table.size = cube_size(behind);
         // Scales without a shaper are in the cube's inputs.
         sample_cube(table, table.shaper_size > 0 ? behind : all);
         return table;
     }
 
-    void sample_shaper(ColorTable& table, Steps steps, std::size_t scales) const {
-        const auto lut = scales < steps.size() ? plain_lut_of(steps[scales]) : nullptr;
-        const auto length = lut ? static_cast<std::uint32_t>(lut->getLength()) : usual_shaper_size;
-        table.shaper_size = std::clamp(length, 2U, 65536U);
+    struct Inputs {
+        Color min{}, max{};
+        std::uint32_t length = usual_shaper_size;  ///< of a 1D table over them
+    };
+
+    /// What the steps take before they clamp it. `scales`: those before the first that is neither a scale nor a clamp.
+    [[nodiscard]] Inputs inputs_of(Steps steps, std::size_t& scales, bool has_cube) const {
+        Affine affine;
+        Inputs clamped;
+        bool is_clamped = false;
+        for (; scales < steps.size(); ++scales) {
+            const std::optional<Clamp> clamp = clamp_of(steps[scales]);
+            for (std::size_t i = 0; clamp && i < 3; ++i) {
+                const float low = affine.input(i, clamp->min), high = affine.input(i, clamp->max);
+                clamped.min[i] = is_clamped ? std::max(clamped.min[i], low) : low;
+                clamped.max[i] = is_clamped ? std::min(clamped.max[i], high) : high;
+            }
+            is_clamped = is_clamped || clamp;
+            const std::optional<Affine> next = clamp ? clamp->affine : affine_of(steps[scales]);
+            if (!next) break;
+            affine = affine.then(*next);
+        }
+        const auto lut = scales < steps.size() ? lut1d_of(steps[scales]) : nullptr;
+        const bool is_of_halves = lut && lut->getInputHalfDomain();
+        const auto [least, most] = is_of_halves ? inputs_of_halves(steps[scales]) : std::array<double, 2>{0, 1};
+        Inputs out;
+        if (lut) out.length = std::clamp(static_cast<std::uint32_t>(lut->getLength()), 2U, max_shaper_size);
+        for (std::size_t i = 0; i < 3; ++i) {
+            out.min[i] = affine.input(i, least);
+            out.max[i] = affine.input(i, most);
+            if (!is_clamped) continue;
+            // Steps without a table go as far as they are clamped.
+            const bool has_table = lut || (scales == steps.size() && has_cube);
+            const float low = std::max(out.min[i], clamped.min[i]), high = std::min(out.max[i], clamped.max[i]);
+            // Between the entries of a table that is cut there are more of ours.
+            const auto is_near = [&](float a, float b) { return std::abs(a - b) <= 1e-5f * (high - low); };
+            if (!is_near(low, out.min[i]) || !is_near(high, out.max[i]))
+                out.length = std::max(out.length, usual_shaper_size);
+            out.min[i] = has_table && low < high ? low : clamped.min[i];
+            out.max[i] = has_table && low < high ? high : clamped.max[i];
+        }
+        return out;
+    }
+
+    /// A table with an entry for every half reaches to 65504, and ours has even steps: the widest inputs in which what
+    /// is between two of them is near, within a two-thousandth.
+    [[nodiscard]] std::array<double, 2> inputs_of_halves(const ocio::ConstTransformRcPtr& step) const {
+        const ocio::ConstProcessorRcPtr curve = processor_of({&step, 1});
+        for (double most = 65504; most > 1; most /= 2) {
+            std::vector<Color> ends{Color{}, Color{}};
+            ends[0].fill(static_cast<float>(-most));
+            run(curve, ends);
+            const double least = ends[0] == ends[1] ? 0 : -most, size = (most - least) / (max_shaper_size - 1);
+            // Two entries and what is between them, next to 0 and ever less often farther off.
+            const double zero = std::floor(-least / size);
+            std::vector<Color> colors;
+            for (double entry = 0; entry * size < most; entry = std::max(entry + 1, std::floor(entry * 1.01)))
+                for (const double from : {zero + entry, zero - 1 - entry})
+                    for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0})
+                        if (from >= 0) colors.emplace_back().fill(static_cast<float>(least + (from + part) * size));
+            run(curve, colors);
+            bool is_near = true;
+            for (std::size_t n = 0; n + 5 <= colors.size(); n += 5)
+                for (std::size_t i = 0; i < 3; ++i)
+                    for (std::size_t k = 1; k < 4; ++k) {
+                        const float part = static_cast<float>(k) / 4;
+                        const float even = colors[n][i] * (1 - part) + colors[n + 4][i] * part;
+                        is_near = is_near && std::abs(even - colors[n + k][i]) <= 5e-4f;
+                    }
+            if (is_near) return {least, most};
+        }
+        return {0, 1};
+    }
+
+    void sample_shaper(ColorTable& table, Steps steps, std::uint32_t length) const {
+        table.shaper_size = length;
         std::vector<Color> colors(table.shaper_size);
         for (std::uint32_t entry = 0; entry < table.shaper_size; ++entry)
             colors[entry] = input_of(table.shaper_min, table.shaper_max, {entry, entry, entry}, table.shaper_size);
         run(processor_of(steps), colors);
         for (const Color& color : colors) table.shaper.insert(table.shaper.end(), color.begin(), color.end());
+    }
+
+    /// Of a cube alone, or with scales behind it, its own; where curves stand behind it, its cells are cut further, and
+    /// its entries are among ours.
+    [[nodiscard]] static std::uint32_t cube_size(Steps steps) {
+        const auto lut = ocio::DynamicPtrCast<const ocio::Lut3DTransform>(steps.front());
+        if (!lut || lut->getDirection() != ocio::TRANSFORM_DIR_FORWARD) return usual_cube_size;
+        const auto cells = static_cast<std::uint32_t>(lut->getGridSize()) - 1;
+        const bool is_linear = std::ranges::all_of(steps.subspan(1), [](const auto& step) {
+            return ocio::DynamicPtrCast<const ocio::MatrixTransform>(step) != nullptr;
+        });
+        if (is_linear) return cells + 1;
+        constexpr std::uint32_t most_cells = 128, usual_cells = usual_cube_size - 1;
+        std::uint32_t parts = (usual_cells + cells - 1) / cells;
+        if (parts == 1 && 2 * cells <= most_cells) parts = 2;
+        return cells * parts + 1;
     }
 
     void sample_cube(ColorTable& table, Steps steps) const {

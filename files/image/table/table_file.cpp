@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 5> chain_names{".3dl", ".spi1d", ".spi3d", ".csp", ".clf"};
+constexpr std::array<std::string_view, 9> chain_names{".3dl", ".spi1d", ".spi3d", ".csp", ".clf",
+                                                      ".ctf", ".lut",   ".itx",   ".cub"};
 /// Bytes of a file that OpenColorIO reads: it makes more than ten times as many of them.
 constexpr std::uintmax_t max_chain_file = std::uintmax_t{32} << 20;
 
@@ -48,6 +49,25 @@ double worst_error(const ColorTable& table, const ColorChain& chain) {
     return worst;
 }
 
+/// Do its operations go on where the table has no inputs any more, and holds those at its ends? Grey, and so each
+/// channel, twice, sixteen times and as far off as halves go.
+bool goes_on(const ColorTable& table, const ColorChain& chain) {
+    const bool is_shaped = table.shaper_size > 0;
+    const auto& min = is_shaped ? table.shaper_min : table.min;
+    const auto& max = is_shaped ? table.shaper_max : table.max;
+    std::vector<std::array<float, 3>> ends{min, max};
+    chain.apply(ends);
+    for (const float factor : {1.0f, 15.0f, 65504.0f})
+        for (const bool is_above : {false, true}) {
+            std::vector<std::array<float, 3>> color{is_above ? max : min};
+            for (std::size_t i = 0; i < 3; ++i) color[0][i] += (max[i] - min[i]) * (is_above ? factor : -factor);
+            chain.apply(color);
+            for (std::size_t i = 0; i < 3; ++i)
+                if (std::abs(color[0][i] - ends[is_above ? 1 : 0][i]) > 1e-4f) return true;
+        }
+    return false;
+}
+
 Result<FoundTable> read_chain(const fs::path& path, const std::string& extension) {
     const std::string shown = printable(path.string());
     const auto refuse = [&](const Error& error) {
@@ -66,6 +86,8 @@ Result<FoundTable> read_chain(const fs::path& path, const std::string& extension
             return refuse({Fault::User, "its operations make colours that are not finite"});
     FoundTable out{.file = {.table = std::move(*table)}, .format = extension};
     out.error = worst_error(out.file.table, **chain);
+    if (goes_on(out.file.table, **chain))
+        out.file.comments.emplace_back("Inputs beyond those of the table are held at its ends; its operations go on");
     return out;
 }
 
@@ -92,10 +114,13 @@ Result<const ColorChains*> color_chains() {
     return static_cast<const ColorChains*>(*loaded);
 }
 
-bool is_table_name(const fs::path& path) {
-    const std::string extension = extension_of(path);
-    return extension == ".cube" || std::ranges::find(chain_names, extension) != chain_names.end();
+std::vector<std::string> table_extensions() {
+    std::vector<std::string> out{".cube"};
+    out.insert(out.end(), chain_names.begin(), chain_names.end());
+    return out;
 }
+
+bool is_table_name(const fs::path& path) { return std::ranges::count(table_extensions(), extension_of(path)) > 0; }
 
 Result<FoundTable> read_table_file(const fs::path& path) {
     const std::string extension = extension_of(path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Colour tables from files of any kind: .cube by the tree's own reader, pictures (strips and HaldCLUTs) through the
-// readers of pictures, .3dl .spi1d .spi3d .csp .clf through OpenColorIO.
+// readers of pictures, the others through OpenColorIO.
 
 #include <filesystem>
 #include <optional>
@@ -18,6 +18,8 @@ struct FoundTable {
     std::optional<double> error;
 };
 
+/// Of files of tables that are no pictures: ".cube", ".3dl".
+[[nodiscard]] std::vector<std::string> table_extensions();
 /// Is this the name of a file of tables that is no picture?
 [[nodiscard]] bool is_table_name(const std::filesystem::path& path);
 /// Errors begin with the path.

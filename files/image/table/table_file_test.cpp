@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <random>
 
 #include "image/picture/write.hpp"
@@ -131,6 +132,88 @@ TEST_F(ImageTables, ChainsAreSampledAndSayHowWell) {
     EXPECT_NEAR(*found->error, worst(table, *chain), 0.5 * *found->error);
 }
 
+std::string clf_of(const std::string& steps) { return clf_head + steps + "</ProcessList>\n"; }
+
+std::string clf_cube(std::uint32_t size) {
+    return fmt::format(
+        "<LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"{0} {0} {0} 3\">\n{1}</Array></LUT3D>\n", size,
+        cube_rows(size, false, false));
+}
+
+std::string clf_range(double from, double to) {
+    return fmt::format(
+        "<Range inBitDepth=\"32f\" outBitDepth=\"32f\"><minInValue>{}</minInValue><maxInValue>{}</maxInValue>"
+        "<minOutValue>0</minOutValue><maxOutValue>1</maxOutValue></Range>\n",
+        from, to);
+}
+
+TEST_F(ImageTables, ARangeInFrontSaysWhichInputsThereAre) {
+    const ColorTable curve = expect_same(write("a.clf", clf_of(clf_range(-0.1, 1.2) + clf_curve)), 1e-5);
+    EXPECT_EQ(curve.shaper_size, 5u);
+    const ColorTable cube = expect_same(write("a.clf", clf_of(clf_range(-0.1, 1.2) + clf_cube(4))), 1e-5);
+    EXPECT_EQ(cube.size, 4u);
+    const ColorTable both = expect_same(write("a.clf", clf_of(clf_range(-0.1, 1.2) + clf_curve + clf_cube(4))), 1e-5);
+    for (const float min : {curve.shaper_min[0], cube.min[1], both.shaper_min[2]}) EXPECT_NEAR(min, -0.1, 1e-6);
+    for (const float max : {curve.shaper_max[0], cube.max[1], both.shaper_max[2]}) EXPECT_NEAR(max, 1.2, 1e-6);
+    // A range alone, and one that cuts the table behind it.
+    expect_same(write("a.clf", clf_of(clf_range(-0.5, 4))), 1e-5);
+    const ColorTable cut =
+        expect_same(write("a.clf", clf_of(clf_range(-1, 3) +
+                                          "<Range inBitDepth=\"32f\" outBitDepth=\"32f\"><minInValue>0.25"
+                                          "</minInValue><maxInValue>0.75</maxInValue><minOutValue>0.25</minOutValue>"
+                                          "<maxOutValue>0.75</maxOutValue></Range>" +
+                                          clf_curve)),
+                    1e-3);
+    EXPECT_NEAR(cut.shaper_min[0], 0, 1e-6);
+    EXPECT_NEAR(cut.shaper_max[0], 2, 1e-6);
+}
+
+TEST_F(ImageTables, StepsBehindACubeAreSampledBetweenItsEntries) {
+    const ColorTable straight = expect_same(write("a.clf", clf_of(clf_cube(4) + clf_matrix)), 1e-5);
+    EXPECT_EQ(straight.size, 4u) << "a matrix behind it bends nothing";
+    const ColorTable curved = expect_same(write("a.clf", clf_of(clf_cube(9) + clf_curve)), 0.02);
+    EXPECT_EQ((curved.size - 1) % 8, 0u) << "the entries are among the new ones";
+    const Result<FoundTable> found = read_table_file(file("a.clf"));
+    ASSERT_TRUE(found && found->error);
+    // At the cube's own size it was 0.09.
+    EXPECT_LT(*found->error, 0.02);
+}
+
+// The curve of ACEScct (S-2016-001), as light of scenes comes.
+TEST_F(ImageTables, ATableOfHalvesReachesBeyondOne) {
+    const auto code_of = [](double value) {
+        return std::max(
+            value <= 0.0078125 ? 10.5402377416545 * value + 0.0729055341958355 : (std::log2(value) + 9.72) / 17.52,
+            0.0);
+    };
+    std::string rows;
+    for (std::uint32_t bits = 0; bits < 65536; ++bits) {
+        const bool is_finite = (bits & 0x7c00U) != 0x7c00U;
+        const double size = bits < 0x8000U ? 1 : -1;
+        const auto exponent = static_cast<int>(bits >> 10 & 31U), mantissa = static_cast<int>(bits & 1023U);
+        const double value =
+            size * (exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25));
+        rows += fmt::format("{:.9g}\n", is_finite ? code_of(value) : 0.0);
+    }
+    const std::string path = write("a.clf", clf_of("<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\" halfDomain=\"true\">"
+                                                   "<Array dim=\"65536 1\">\n" +
+                                                   rows + "</Array></LUT1D>\n"));
+    const Result<FoundTable> found = read_table_file(path);
+    ASSERT_TRUE(found) << found.error().text;
+    const ColorTable& table = found->file.table;
+    EXPECT_GE(table.shaper_max[0], 4.0f);
+    EXPECT_LE(table.shaper_min[0], -0.006f) << "codes of 0 and more";
+    EXPECT_LE(found->error.value_or(1), 1e-3);
+    for (double value = -0.01; value < double{table.shaper_max[0]}; value += std::max(std::abs(value) / 16, 1e-5))
+        EXPECT_NEAR(evaluate(table, {value, value, value})[1], code_of(value), 2e-3) << value;
+    ASSERT_FALSE(found->file.comments.empty()) << "it goes on to 65504";
+    EXPECT_NE(found->file.comments[0].find("held at its ends"), std::string::npos);
+    // What ends with the table says nothing.
+    const Result<FoundTable> curve = read_table_file(write("b.clf", clf_of(clf_curve)));
+    ASSERT_TRUE(curve);
+    EXPECT_TRUE(curve->file.comments.empty());
+}
+
 TEST_F(ImageTables, WhatIsWrittenIsReadByOpenColorIo) {
     std::mt19937 random(4);
     const auto fill = [&](std::vector<float>& entries, std::size_t count) {
@@ -159,6 +242,28 @@ TEST_F(ImageTables, WhatIsWrittenIsReadByOpenColorIo) {
                     EXPECT_EQ(back->file.table.cube, table.cube);
                     EXPECT_EQ(back->file.table.shaper, table.shaper);
                 }
+}
+
+TEST_F(ImageTables, FilesOfOtherProgramsAreReadByTheirSuffix) {
+    const std::string rows = cube_rows(2, true, false);
+    for (const auto& [name, text] :
+         {std::pair("a.itx", "LUT_3D_SIZE 2\n" + rows),
+          std::pair("a.cub",
+                    "# Truelight Cube v2.0\n# iDims 3\n# oDims 3\n# width 2 2 2\n\n# Cube\n" + rows + "# end\n"),
+          std::pair("a.lut",
+                    "Version\t3\nFormat\tany\nType\t3D\nFrom\t0 1\nTo\t0 1\nBlack\t0\nWhite\t1\n"
+                    "Length\t2\nLUT:\n3D {\n" +
+                        rows + "}\n"),
+          std::pair("a.ctf",
+                    "<?xml version=\"1.0\"?>\n<ProcessList version=\"1.3\" id=\"a\">\n<LUT3D "
+                    "inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"2 2 2 3\">\n" +
+                        cube_rows(2, false, false) + "</Array></LUT3D></ProcessList>\n")}) {
+        const ColorTable table = expect_same(write(name, text), 1e-5);
+        ASSERT_EQ(table.size, 2u) << name;
+        // The entry of full blue.
+        EXPECT_NEAR(table.cube[3 * 4], 0.2, 1e-5) << name;
+        EXPECT_NEAR(table.cube[3 * 4 + 2], 0.6, 1e-5) << name;
+    }
 }
 
 TEST_F(ImageTables, WhatIsNoTableIsOneLine) {

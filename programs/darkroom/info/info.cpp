@@ -13,6 +13,7 @@
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "image/picture/picture_source.hpp"
+#include "image/table/table_file.hpp"
 #include "info_documents.hpp"
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/effects/named_effects.hpp"
@@ -61,7 +62,7 @@ bool is_toml(const Head& head) {
 }
 
 bool is_table(const Head& head) {
-    constexpr std::array extensions{".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf"};
+    const std::vector<std::string> extensions = darkroom::table_extensions();
     std::string_view line = head.first_line();
     if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
     const auto begins = [&](std::string_view word) { return line.starts_with(word); };
@@ -82,10 +83,11 @@ std::array<Kind, 4> kinds_of(const Options& options) {
         return info::toml(path, allows, named);
     };
     const auto model = [named](const fs::path& path) { return info::model(path, named); };
-    return {Kind{fmt::format("a picture ({})", darkroom::format_names()), is_picture, info::picture},
-            Kind{"a model (glTF)", is_model, model},
-            Kind{"a colour table (.cube, .3dl, .spi1d, .spi3d, .csp, .clf)", is_table, info::table},
-            Kind{"a scene or a look (TOML)", is_toml, toml}};
+    return {
+        Kind{fmt::format("a picture ({})", darkroom::format_names()), is_picture, info::picture},
+        Kind{"a model (glTF)", is_model, model},
+        Kind{fmt::format("a colour table ({})", fmt::join(darkroom::table_extensions(), ", ")), is_table, info::table},
+        Kind{"a scene or a look (TOML)", is_toml, toml}};
 }
 
 Result<Head> head_of(const fs::path& path) {

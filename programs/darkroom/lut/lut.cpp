@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // darkroom lut: colour tables in files.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -68,7 +69,9 @@ Command add_convert(CommandFlags lut) {
     };
     const auto options = std::make_shared<Options>();
     const CommandFlags command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
-    command.add_option("FILE", options->from, "A table: .cube .3dl .spi1d .spi3d .csp .clf, a strip or a HaldCLUT")
+    command
+        .add_option("FILE", options->from,
+                    fmt::format("A table: {}, a strip or a HaldCLUT", fmt::join(darkroom::table_extensions(), " ")))
         .required();
     return {command, [options] {
                 const Result<> done = convert(options->from, options->to);

@@ -243,7 +243,7 @@ def compare(reference, test) -> dict:
 
 
 def table(path) -> Table:
-    """A colour table in any format that `darkroom lut convert` reads: .cube .3dl .spi1d .spi3d .csp .clf, a HaldCLUT."""
+    """A colour table in any format that `darkroom lut convert` reads (.cube, .3dl, .clf and others), a HaldCLUT."""
     with of_file(path), tempfile.TemporaryDirectory(prefix="darkroom-") as folder:
         out = os.path.join(folder, "table.cube")
         run("lut", "convert", path, "-o", out)
