@@ -120,6 +120,8 @@ std::string profile_description(Bytes profile) {
     return out;
 }
 
+bool has_curves(Bytes profile) { return !tag(profile, "rTRC").empty(); }
+
 std::optional<ColorCoding> profile_coding(Bytes profile) {
     if (!is(profile, 36, "acsp") || !is(profile, 16, "RGB ") || !is(profile, 20, "XYZ ")) return std::nullopt;
     // A table from numbers to colour goes before colorants.

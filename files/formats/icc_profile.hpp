@@ -21,6 +21,9 @@ namespace darkroom {
 /// curves of their own, or one that is neither a formula nor near sRGB's or a power.
 [[nodiscard]] std::optional<ColorCoding> profile_coding(std::span<const std::byte> profile);
 
+/// Has it curves, whatever they are? Then it is what they say, and not what its name says.
+[[nodiscard]] bool has_curves(std::span<const std::byte> profile);
+
 /// A profile of a display with these primaries, a white of D65 and the curve of sRGB (ICC.1:2022, version 4.3).
 [[nodiscard]] std::vector<std::byte> display_profile(std::string_view name, const Chromaticities& primaries);
 

@@ -210,6 +210,9 @@ class TiffChecker {
             if (value(*entry, i) != format) return malformed("samples of different kinds");
         constexpr std::array<std::uint64_t, 8> whole{1, 2, 4, 8, 10, 12, 14, 16};
         const Entry* const meaning = find(photometric);
+        // CIE L*a*b*, with numbers of either sign or none, or of the ITU: decoders take one for another.
+        if (meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) >= 8 && value(*meaning, 0) <= 10)
+            return user_error("its colours are CIE L*a*b*, which is not read here: save it as RGB");
         const bool is_negative = meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) == 0;
         const bool is_known_whole = std::ranges::count(whole, bits_) > 0 && !(is_negative && bits_ > 8 && bits_ < 16);
         if (format == 3 ? bits_ == 16 || bits_ == 32 : format == 1 ? is_known_whole : format == 4 && bits_ == 8)

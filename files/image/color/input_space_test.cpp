@@ -236,6 +236,8 @@ TEST(ImageIccProfile, OfAMatrixAndACurveIsRead) {
     const ColorMatrix matrix = *to_rec709(found->primaries);
     for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(matrix[i], published[i], 1e-3) << i;
     EXPECT_FALSE(coding(matrix_profile(p3, odd))) << "no curve that is known";
+    const std::string unknown = matrix_profile(p3, odd);
+    EXPECT_TRUE(has_curves(std::as_bytes(std::span(unknown)))) << "whatever it is called";
     EXPECT_FALSE(coding(matrix_profile(p3, parametric, gamma))) << "a curve for each channel";
     const std::vector<std::byte> ours = display_profile("Display P3", find_input_space("p3")->primaries);
     EXPECT_EQ(profile_coding(ours), (ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}));
