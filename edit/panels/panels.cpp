@@ -26,7 +26,7 @@ std::vector<std::string> extensions_of(FileKind kind) {
             return {".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf", ".ctf",
                     ".lut",  ".itx", ".cub",   ".png",   ".tif", ".exr"};
         case FileKind::Picture:
-            return {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr"};
+            return {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".exr", ".hdr", ".pfm"};
         case FileKind::Document:
             return {".svg", ".png"};
         case FileKind::Script:

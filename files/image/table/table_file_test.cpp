@@ -175,7 +175,6 @@ TEST_F(ImageTables, StepsBehindACubeAreSampledBetweenItsEntries) {
     EXPECT_EQ((curved.size - 1) % 8, 0u) << "the entries are among the new ones";
     const Result<FoundTable> found = read_table_file(file("a.clf"));
     ASSERT_TRUE(found && found->error);
-    // At the cube's own size it was 0.09.
     EXPECT_LT(*found->error, 0.02);
 }
 

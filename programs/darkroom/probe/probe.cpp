@@ -340,7 +340,7 @@ static Command add_probe(CommandFlags program, std::span<const darkroom::LookEnt
         "darkroom probe frame.exr --at 12,4\n"
         "darkroom probe frame.exr --look my.toml --at 12,4 --at 3,3\n"
         "darkroom probe frame.exr --at 12,4 --json");
-    command.add_option("FRAME", options->input, "A frame (EXR, HDR, PNG, JPEG, TIFF)").required();
+    command.add_option("FRAME", options->input, "A frame, as develop reads it").required();
     command.add_option("--at", options->at, "A pixel of the picture, from its top left corner; may stand several times")
         .type_name("X,Y")
         .repeated()
