@@ -84,9 +84,9 @@ void write_blocks(Text text, const KernelSpec& spec) {
 
 /// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE, by four loads.
 /// At the centre of a texel no other is looked at, which may be NaN.
-void write_filter(Text text, std::string_view function, std::string_view name) {
+void write_filter(Text text, std::string_view name) {
     fmt::format_to(text,
-                   "vec4 {1}_{0}(vec2 uv) {{\n"
+                   "vec4 sample_linear_{0}(vec2 uv) {{\n"
                    "    ivec2 last = size_{0}() - 1;\n"
                    "    vec2 place = clamp(uv * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
                    "    place = round(place * 16384.0) / 16384.0;\n"
@@ -95,7 +95,7 @@ void write_filter(Text text, std::string_view function, std::string_view name) {
                    "    return mix(mix(load_{0}(low), load_{0}(ivec2(high.x, low.y)), weight.x),\n"
                    "               mix(load_{0}(ivec2(low.x, high.y)), load_{0}(high), weight.x), weight.y);\n"
                    "}}\n",
-                   name, function);
+                   name);
 }
 
 std::string_view place_of(const KernelImage& image) { return image.is_single ? "ivec2(0)" : "texel"; }
@@ -111,7 +111,7 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
         "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, {3}{2}); }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n",
         image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name), place_of(image));
-    if (prefix.empty()) write_filter(text, "sample_linear", image.name);
+    if (prefix.empty()) write_filter(text, image.name);
 }
 
 void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& image, std::uint32_t binding,
@@ -145,41 +145,17 @@ void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& i
         "{1}vec4 load_{0}(ivec2 texel) {{ return {2}; }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
         "vec2 darkroom_place_{0}(vec2 uv) {{\n{3}}}\n"
-        "vec2 darkroom_corner_{0}(vec2 uv) {{\n{4}}}\n",
+        "vec2 darkroom_corner_{0}(vec2 uv) {{\n{4}}}\n"
+        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 0); }}\n"
+        "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 1); }}\n",
         image.name, prefix, load, place, corner);
-    // Of the four texels that a sampler mixes or gathers some lie outside of a region of one texel, whatever the place.
-    for (const auto& [component, channel] : {std::pair{"red", 0}, std::pair{"green", 1}}) {
-        const std::string narrow = is_whole ? ""
-                                            : fmt::format(
-                                                  "    if (min(darkroom_region_{0}.z, darkroom_region_{0}.w) == 1) {{\n"
-                                                  "        ivec2 low = ivec2(floor(uv * vec2(size_{0}()) - 0.5));\n"
-                                                  "        return {1}vec4(load_clamped_{0}(low + ivec2(0, 1))[{2}],\n"
-                                                  "                       load_clamped_{0}(low + 1)[{2}],\n"
-                                                  "                       load_clamped_{0}(low + ivec2(1, 0))[{2}],\n"
-                                                  "                       load_clamped_{0}(low)[{2}]);\n    }}\n",
-                                                  image.name, prefix, channel);
-        fmt::format_to(text,
-                       "{1}vec4 gather_{2}_{0}(vec2 uv) {{\n{3}"
-                       "    return textureGather({0}, darkroom_corner_{0}(uv), {4});\n}}\n",
-                       image.name, prefix, component, narrow, channel);
-    }
-    if (image.is_filtered_by_loads) return write_filter(text, "sample_linear", image.name);
-    const bool may_be_narrow = !is_whole && prefix.empty();
-    if (may_be_narrow) write_filter(text, "darkroom_filtered", image.name);
-    const std::string narrow = may_be_narrow
-                                   ? fmt::format(
-                                         "    if (any(greaterThan(darkroom_bounds_{0}.xy, darkroom_bounds_{0}.zw)))\n"
-                                         "        return darkroom_filtered_{0}(uv);\n",
-                                         image.name)
-                                   : "";
+    if (image.is_filtered_by_loads) return write_filter(text, image.name);
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.
     const std::string_view function = stage == Stage::Raster ? "texture" : "textureLod";
     const std::string_view level = stage == Stage::Raster ? "" : ", 0.0";
-    fmt::format_to(text,
-                   "{1}vec4 sample_linear_{0}(vec2 uv) {{\n{4}"
-                   "    return {2}({0}, darkroom_place_{0}(uv){3});\n}}\n",
-                   image.name, prefix, function, level, narrow);
+    fmt::format_to(text, "{1}vec4 sample_linear_{0}(vec2 uv) {{ return {2}({0}, darkroom_place_{0}(uv){3}); }}\n",
+                   image.name, prefix, function, level);
 }
 
 /// To the nearest of the packed floats of 6 and 5 bits, so that no driver is left to cut off. The largest are those
@@ -287,8 +263,7 @@ struct Axis {
     float scale = 1.0F, offset = 0.0F, lowest = 0.0F, highest = 1.0F;
 };
 
-Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image, std::uint32_t sub_texel_bits,
-             bool is_nearest) {
+Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image, std::uint32_t sub_texel_bits) {
     if (image == 0) return {};
     // Where the region ends inside the image, its edge texel must not be mixed with its neighbour, not even with a
     // weight of zero: that may be an infinity. Samplers snap coordinates to 2^-subTexelPrecisionBits of a texel (Vulkan
@@ -297,16 +272,12 @@ Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image, std
     const double size = image, guard = std::ldexp(1.0, -static_cast<int>(sub_texel_bits)) / size;
     const double last = offset + static_cast<double>(extent) - 1.0;
     const bool ends_inside = offset + static_cast<double>(extent) < size;
-    Axis axis{.scale = static_cast<float>(extent / size), .offset = static_cast<float>(offset / size)};
-    if (extent == 1 && image > 1) {
-        // One texel has no place where a sampler mixes nothing else: bounds in the wrong order say so to the kernel.
-        axis.lowest = is_nearest ? static_cast<float>((offset + 0.5) / size) : 1.0F;
-        axis.highest = is_nearest ? axis.lowest : 0.0F;
-        return axis;
-    }
-    axis.lowest = offset > 0 ? static_cast<float>((offset + 0.5) / size + guard) : 0.0F;
-    axis.highest = ends_inside ? static_cast<float>((last + 0.5) / size - guard) : 1.0F;
-    return axis;
+    return {
+        .scale = static_cast<float>(extent / size),
+        .offset = static_cast<float>(offset / size),
+        .lowest = offset > 0 ? static_cast<float>((offset + 0.5) / size + guard) : 0.0F,
+        .highest = ends_inside ? static_cast<float>((last + 0.5) / size - guard) : 1.0F,
+    };
 }
 
 template <class Value>
@@ -396,10 +367,8 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
     append(out, std::array{columns.step, rows.step, columns.first, rows.first});
     for (const Binding& image : images) {
         const Region& region = image.region;
-        const Axis x =
-            axis_of(region.offset.x, region.extent.width, region.image.width, spec.sub_texel_bits, image.is_nearest);
-        const Axis y =
-            axis_of(region.offset.y, region.extent.height, region.image.height, spec.sub_texel_bits, image.is_nearest);
+        const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width, spec.sub_texel_bits);
+        const Axis y = axis_of(region.offset.y, region.extent.height, region.image.height, spec.sub_texel_bits);
         append(out, std::array{x.scale, y.scale, x.offset, y.offset});
         append(out, std::array{x.lowest, y.lowest, x.highest, y.highest});
         append(out, rectangle(region));

@@ -171,49 +171,6 @@ TEST(GpuKernel, FilteringDoesNotSeeWhatLiesOutsideTheRegion) {
     }
 }
 
-// A sampler mixes two texels a side, and of these at most one lies in the region, whatever the weights.
-TEST(GpuKernel, RegionsOfOneTexelASideSeeNothingElse) {
-    const float poison = std::numeric_limits<float>::quiet_NaN();
-    for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{1, 5}, VkExtent2D{5, 1}})
-        for (const VkOffset2D offset : {VkOffset2D{0, 0}, VkOffset2D{3, 2}, VkOffset2D{8, 7}}) {
-            const Pixels pixels = test::make_pixels(offset.x == 8 ? 8 + extent.width : 16, 12, [&](auto x, auto y) {
-                const auto column = static_cast<std::int32_t>(x) - offset.x;
-                const auto row = static_cast<std::int32_t>(y) - offset.y;
-                const bool is_inside = column >= 0 && row >= 0 && static_cast<std::uint32_t>(column) < extent.width &&
-                                       static_cast<std::uint32_t>(row) < extent.height;
-                const auto value = static_cast<float>(column + row);
-                return is_inside ? std::array{value, 1.0F, 1.0F, 1.0F} : std::array{poison, poison, poison, poison};
-            });
-            for (const Stage stage : {Stage::Compute, Stage::Raster})
-                for (const std::string_view call : {"sample_linear", "gather_red"}) {
-                    SCOPED_TRACE(fmt::format("{} of {}x{} at {}, stage {}", call, extent.width, extent.height, offset.x,
-                                             static_cast<int>(stage)));
-                    Picture in = test::upload(context(), pixels, VK_FORMAT_R32G32B32A32_SFLOAT);
-                    Picture out = test::blank(context(), extent, VK_FORMAT_R32G32B32A32_SFLOAT);
-                    const std::string body =
-                        fmt::format("vec4 shade(Pixel pixel) {{ return {}(scene, pixel.uv); }}", call);
-                    const std::unique_ptr<Kernel> kernel =
-                        must(Kernel::create(context(), spec_of(body, VK_FORMAT_R32G32B32A32_SFLOAT), stage));
-                    const VkExtent2D whole{pixels.width, pixels.height};
-                    test::run_kernel(context(), *kernel,
-                                     {.inputs = {&in},
-                                      .outputs = {&out},
-                                      .input_regions = {{.offset = offset, .extent = extent, .image = whole}}});
-                    const Pixels result = test::download(context(), out);
-                    for (std::uint32_t i = 0; i < extent.width * extent.height; ++i) {
-                        const auto own = static_cast<float>(i), before = static_cast<float>(i == 0 ? 0 : i - 1);
-                        const auto& texel = result.at(i % extent.width, i / extent.width);
-                        // At a texel's centre it is the texel itself; of the four there, some lie before it.
-                        if (call == "sample_linear") {
-                            EXPECT_NEAR(texel[0], own, 2 * test::filter_step());
-                            continue;
-                        }
-                        for (const float value : texel) EXPECT_TRUE(value >= before && value <= own + 1) << value;
-                    }
-                }
-        }
-}
-
 // Hardware rounds coordinates to 1/256 of a texel and less: the four texels meant must be the same with that.
 TEST(GpuKernel, GathersLieInsideTheRegionHoweverTheyAreRounded) {
     constexpr double rounding = 1 / 256.0;
