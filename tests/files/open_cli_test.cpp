@@ -47,9 +47,7 @@ class CliOpen : public test::CliFixture {
         // The window comes before what it shows.
         if (outcome.err.find("no window can be opened") != std::string::npos) return;
         EXPECT_EQ(outcome.code, code) << line << ": " << outcome.err;
-        // A task of a farm tries four times, and says so.
-        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1)
-            << line << ": " << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << line << ": " << outcome.err;
         const std::string expected = std::filesystem::path(file).filename().string() + ": is a " +
                                      (file.find("pipe") == std::string::npos ? "device" : "pipe") +
                                      ", a regular file is needed";
@@ -230,18 +228,17 @@ TEST(FilesOpened, ByOneFunctionAlone) {
         R"(AddFontFromFileTTF|luaL_(load|do)file)");
     const std::filesystem::path source = test::source_folder;
     std::set<std::string> found;
-    for (const char* const folder : {"engine", "files", "run", "scenes", "edit", "proof/graph_check",
-          "proof/verify", "proof/verifier", "programs/darkroom", "include"})
+    for (const char* const folder : {"engine", "files", "run", "scenes", "edit", "proof/graph_check", "proof/verify",
+                                     "proof/verifier", "programs/darkroom", "include"})
         for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder)) {
             const std::string name = entry.path().lexically_relative(source).string();
             const bool is_source = name.ends_with(".cpp") || name.ends_with(".hpp");
             if (!is_source || name.find("test") != std::string::npos) continue;
             if (std::regex_search(test::content(entry.path()), opener)) found.insert(name);
         }
-    EXPECT_EQ(found,
-              (std::set<std::string>{"engine/core/files.cpp", "engine/core/system/file.hpp",
-                                     "engine/core/system/file_posix.cpp", "engine/core/system/file_windows.cpp",
-                                     "edit/panels/widgets/theme.cpp"}));
+    EXPECT_EQ(found, (std::set<std::string>{"engine/core/files.cpp", "engine/core/system/file.hpp",
+                                            "engine/core/system/file_posix.cpp", "engine/core/system/file_windows.cpp",
+                                            "edit/panels/widgets/theme.cpp"}));
 }
 
 }  // namespace
