@@ -163,9 +163,9 @@ TEST(Documents, SentencesAreStatements) {
 
 TEST(Documents, EveryFlagIsRunByATest) {
     // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
-    // Cargo's, CMake's, pkg-config's, rustc's and GNU parallel's.
-    std::set<std::string> run{"--manifest-path", "--build", "--install", "--prefix", "--test-dir",
-                              "--cflags",        "--libs",  "--edition", "--results"};
+    // Cargo's, CMake's, pkg-config's, rustc's, GNU parallel's and xmake's.
+    std::set<std::string> run{"--manifest-path", "--build", "--install", "--prefix",  "--test-dir",
+                              "--cflags",        "--libs",  "--edition", "--results", "--network"};
     for (const EffectInfo* const effect : all_effects()) {
         const std::string name = flag_name(effect->name);
         run.insert({name, "--no-" + name.substr(2), name + "-enabled"});
