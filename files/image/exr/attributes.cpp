@@ -71,10 +71,10 @@ bool is_of_any_picture(std::string_view name) {
            std::ranges::any_of(starts, [&](std::string_view start) { return lowered.starts_with(start); });
 }
 
-/// Which part of the scene a picture shows, and the shape of its pixels.
+/// Which part of the scene a picture shows.
 bool is_framing(std::string_view name) {
     const std::string lowered = lower(name);
-    return lowered == "pixelaspectratio" || lowered == "worldtondc" || lowered.starts_with("screenwindow") ||
+    return lowered == "worldtondc" || lowered.starts_with("screenwindow") ||
            (lowered.starts_with("darkroom:") && lowered.find("projection") != std::string::npos);
 }
 
@@ -100,10 +100,12 @@ ExrAttributes::ExrAttributes(const Imf::Header& header, Of of) : kept_(std::make
 
 ExrAttributes::~ExrAttributes() = default;
 
-void ExrAttributes::add_to(Imf::Header& header, bool is_reframed) const {
-    for (auto found = kept_->begin(); found != kept_->end(); ++found)
-        if (!is_layout(found.name()) && !(is_reframed && is_framing(found.name())))
-            add(found.name(), found.attribute(), header);
+void ExrAttributes::add_to(Imf::Header& header, bool is_cropped, bool is_stretched) const {
+    for (auto found = kept_->begin(); found != kept_->end(); ++found) {
+        const std::string_view name = found.name();
+        const bool is_untrue = (is_cropped && is_framing(name)) || (is_stretched && lower(name) == "pixelaspectratio");
+        if (!is_layout(name) && !is_untrue) add(found.name(), found.attribute(), header);
+    }
 }
 
 void ExrAttributes::add_cryptomatte_to(Imf::Header& header) const {

@@ -20,9 +20,9 @@ class ExrAttributes {
     enum class Of { Picture, Layers };
     ExrAttributes(const Imf::Header& header, Of of);
     ~ExrAttributes();
-    /// Adds them to `header`, but for those it has already. `is_reframed`: of a picture of another shape, or of another
-    /// part of the scene, which the shape of pixels and the projection of the frame are not true of.
-    void add_to(Imf::Header& header, bool is_reframed = false) const;
+    /// Adds them to `header`, but for those it has already, and for what is not true of a part of the frame (its
+    /// projection) or of the frame stretched (the shape of its pixels).
+    void add_to(Imf::Header& header, bool is_cropped = false, bool is_stretched = false) const;
     /// Those of mattes, whose layers are kept in the same part.
     void add_cryptomatte_to(Imf::Header& header) const;
     /// Names of what a picture of the frame does not say, though its layout does not replace it.

@@ -224,7 +224,7 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
     }
     const std::optional<ColorState> color = color_of(options, samples);
     add_primaries(part.header, color ? chromaticities_of(color->primaries) : Chromaticities{});
-    if (options.attributes) options.attributes->add_to(part.header, options.is_reframed);
+    if (options.attributes) options.attributes->add_to(part.header, options.is_cropped, options.is_stretched);
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
         part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});

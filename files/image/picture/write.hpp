@@ -33,7 +33,8 @@ struct WriteOptions {
     /// PNG: a level, 0 to 12; TIFF: none, packbits, lzw, zip; OpenEXR: none, rle, zips, zip, piz, pxr24, b44, b44a,
     /// dwaa, dwab. Empty: PNG fast, the others zip.
     std::string compression;
-    bool is_reframed = false;  ///< the picture has another shape than that frame, or shows another part of the scene
+    bool is_cropped = false;                          ///< the picture shows another part of the scene than that frame
+    bool is_stretched = false;                        ///< its pixels have another shape
     std::shared_ptr<const ExrAttributes> attributes;  ///< of the frame that the picture was made of: into OpenEXR files
     /// The display window, in pixels of the picture, which becomes the data window of OpenEXR files; nothing: both are
     /// it.

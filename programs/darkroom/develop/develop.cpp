@@ -316,7 +316,7 @@ class Develop {
         darkroom::DevelopInput input;
         darkroom::DevelopedPicture picture;
         std::vector<std::byte> packed;  ///< of a stream: what goes out
-        VkExtent2D extent{};
+        VkExtent2D stored{}, extent{};  ///< of the frame in its file, and of the picture
     };
 
     // The device is made when the first frame has been read: an unreadable one is refused at once.
@@ -349,8 +349,9 @@ class Develop {
         // Alpha that is not kept is a mask at most, as scenes write it.
         const bool has_alpha = job_.write.alpha && frame.has_alpha;
         if (has_alpha && !frame.is_associated) darkroom::associate(frame.color);
-        DARKROOM_TRY_VALUE(darkroom::FrameFile sized, darkroom::resize(std::move(frame), size));
         Item& item = items_[i];
+        item.stored = {frame.color.width, frame.color.height};
+        DARKROOM_TRY_VALUE(darkroom::FrameFile sized, darkroom::resize(std::move(frame), size));
         item.frame = std::move(sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
@@ -426,12 +427,13 @@ class Develop {
         return {};
     }
 
-    [[nodiscard]] bool is_reframed(const Item& item) const {
-        const VkExtent2D frame = item.input.extent, made = item.extent;
+    [[nodiscard]] bool is_cropped() const { return job_.size && job_.size->sizing == darkroom::Sizing::Fill; }
+    /// By --size, by --output-size, or by a stack that makes a picture of another shape; sizes are rounded to pixels.
+    [[nodiscard]] bool is_stretched(const Item& item) const {
+        const VkExtent2D frame = item.stored, made = item.extent;
         const std::int64_t difference =
             std::int64_t{made.width} * frame.height - std::int64_t{made.height} * frame.width;
-        return (job_.size && job_.size->sizing != darkroom::Sizing::Fit) ||
-               std::abs(difference) > std::max(frame.width, frame.height);
+        return !is_cropped() && std::abs(difference) > std::max(frame.width, frame.height);
     }
 
     Result<> encode(std::size_t i) {
@@ -442,7 +444,8 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
-        options.is_reframed = is_reframed(items_[i]);
+        options.is_cropped = is_cropped();
+        options.is_stretched = is_stretched(items_[i]);
         if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
         if (options_.keeps_layers) DARKROOM_TRY(keep_layers(i, options));
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
@@ -543,9 +546,7 @@ static Command add_develop(CommandFlags program, std::span<const darkroom::LookE
         "darkroom develop frame.exr --look my.toml --exposure 2 -o picture.png\n"
         "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
         "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
-    command
-        .add_option("INPUT", options->inputs, "Frames or pictures; ####, %04d or $F4 for all numbers")
-        .required();
+    command.add_option("INPUT", options->inputs, "Frames or pictures; ####, %04d or $F4 for all numbers").required();
     command
         .add_option("-o,--output,--out", options->out,
                     fmt::format("The picture: {}. For several inputs a folder, or a name with %04d, #### or "
