@@ -102,8 +102,21 @@ TEST_F(CliFarm, TasksThatNothingSubmittedAreHeldAgainstTheFirst) {
               "(shot.####.exr -o out/ --look my.toml); remove it, " +
                   elsewhere);
     EXPECT_FALSE(fs::exists(path(out("out", 2))));
+    json killed = record("0-1");
+    killed["state"] = "begun";
+    killed["done"] = json::array();
+    write("out/shot.farm/0-1.json", killed.dump());
+    EXPECT_EQ(run_lines(task + "2").err, changed.err) << "pictures that nobody wrote down count, too";
     for (const int number : {0, 1}) fs::remove(path(out("out", number)));
     EXPECT_EQ(run_lines(task + "2").code, 0) << "none of them is left";
+}
+
+// Slurm may begin a task before the job is written down, which the task must not do in its place.
+TEST_F(CliFarm, ATaskOfSlurmWritesNoJob) {
+    const std::string slurm = "SLURM_ARRAY_JOB_ID=17 SLURM_ARRAY_TASK_ID=0 ";
+    EXPECT_EQ(run_lines(slurm + "darkroom farm task 'shot.####.exr' -o out/ --frames 0").code, 0);
+    EXPECT_EQ(record("0-0")["job"], "17_0");
+    EXPECT_FALSE(fs::exists(path("out/shot.farm/job.json")));
 }
 
 TEST_F(CliFarm, FramesWithoutInputAreTold) {

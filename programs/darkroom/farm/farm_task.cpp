@@ -128,10 +128,11 @@ class Task {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Of any task: one that was killed leaves whole pictures that it could not write down.
 Result<bool> has_pictures(const fs::path& folder) {
     DARKROOM_TRY_VALUE(const std::vector<ChunkRecord> records, read_records(folder));
     return std::ranges::any_of(records, [&](const ChunkRecord& record) {
-        return std::ranges::any_of(record.done, [&](long long number) {
+        return std::ranges::any_of(record.frames, [&](long long number) {
             return std::ranges::any_of(record.names.pictures(number), [&](const fs::path& picture) {
                 return is_there(folder.parent_path() / picture.filename());
             });
@@ -143,6 +144,8 @@ Result<bool> has_pictures(const fs::path& folder) {
 /// task writes what the others are held against, as long as a picture of theirs is there.
 Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
     DARKROOM_TRY_VALUE(const std::optional<FarmJob> job, read_job(work.folder));
+    // `farm slurm` writes it when the job is in the queue, where a task may begin before.
+    if (!job && !job_name().empty()) return {};
     const bool is_submitted = job && !job->id.empty();
     if (is_submitted && !has_arguments(*job, flags.task())) return {};
     DARKROOM_TRY_VALUE(FarmInputs inputs, flags.check(work, named));
