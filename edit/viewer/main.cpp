@@ -2,7 +2,7 @@
 // darkroom_viewer: what `darkroom play` and `darkroom edit` start, with the same arguments.
 #include <fmt/format.h>
 
-#include "programs/darkroom/flags/run_program.hpp"
+#include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "viewer/input/keys.hpp"
 #include "viewer/input/view_job.hpp"

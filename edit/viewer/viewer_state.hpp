@@ -6,6 +6,8 @@
 #include <chrono>
 #include <deque>
 #include <future>
+#include <system_error>
+#include <type_traits>
 
 #include "develop/inspect/inspector.hpp"
 #include "develop/readback.hpp"
@@ -17,10 +19,9 @@
 #include "screen.hpp"
 #include "viewer.hpp"
 #include "viewer/input/camera_rig.hpp"
+#include "viewer/input/command_line.hpp"
 #include "viewer/input/keys.hpp"
-#include "viewer/input/known_panels.hpp"
-#include "viewer/input/line_input.hpp"
-#include "viewer/source/beside.hpp"
+#include "viewer/panels/panel_layout.hpp"
 #include "viewer/source/compared_picture.hpp"
 #include "viewer/source/live_interface.hpp"
 #include "viewer/source/look_view.hpp"
@@ -97,14 +98,21 @@ class Viewer {
     void settle(std::string_view source, const darkroom::Result<>& done) {
         done ? screen_.clear_error(source) : screen_.tell_error(source, done.error().text);
     }
-    /// Work on a thread of its own; without one the window waits, and says so.
+    /// Work beside the frames, such as reading and writing files, on a thread of its own; without one the window waits,
+    /// and says so.
     template <class Work>
     [[nodiscard]] auto start_beside(const Work& work) {
-        bool has_thread = true;
-        auto out = beside(work, has_thread);
-        settle("threads", has_thread ? darkroom::Result<>()
-                                     : darkroom::machine_error("no further thread can be started: the window waits "
-                                                               "while files are read and written"));
+        try {
+            auto out = std::async(std::launch::async, work);
+            settle("threads", {});
+            return out;
+        } catch (const std::system_error&) {
+            settle("threads", darkroom::machine_error("no further thread can be started: the window waits while files "
+                                                      "are read and written"));
+        }
+        std::packaged_task<std::invoke_result_t<Work>()> here(work);
+        auto out = here.get_future();
+        here();
         return out;
     }
 
@@ -143,7 +151,7 @@ class Viewer {
     void take_opened();
     void name_window();
 
-    // viewer_idle.cpp
+    // viewer_pace.cpp
     /// Waits where there was nothing to draw, and takes what has happened meanwhile.
     void rest();
     [[nodiscard]] bool is_due();
@@ -152,7 +160,6 @@ class Viewer {
     [[nodiscard]] bool is_coming() const;
     [[nodiscard]] double frames_a_second();
 
-    // viewer_preview.cpp
     /// Of the frame that comes: how many of its pixels are made.
     void choose_scale();
     /// Takes how long the slot's last frame took, and how long this one does from now on, up to end_timing().

@@ -11,7 +11,7 @@
 #include "core/program_module.hpp"
 #include "core/system/spawn.hpp"
 #include "core/text/param_text.hpp"
-#include "programs/darkroom/flags/run_program.hpp"
+#include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/run/report.hpp"
 
 namespace {

@@ -3,16 +3,45 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <type_traits>
 
 #include "bench/chain/chains.hpp"
-#include "bench/chain/null_commands.hpp"
-#include "bench/program/scene.hpp"
+#include "bench/chain/recipe.hpp"
 #include "core/test_support_allocations.hpp"
+#include "gpu/device/dispatch.hpp"
 #include "rows.hpp"
 
 namespace darkroom::bench {
 
 namespace {
+
+// While it lives, what a recording calls of the driver does nothing: what is left is the library's own cost.
+
+class NullCommands {
+  public:
+    explicit NullCommands(gpu::Dispatch& vk) : vk_(vk), kept_(vk) {
+        drop(vk.UpdateDescriptorSets, vk.CmdBindPipeline, vk.CmdBindDescriptorSets, vk.CmdPipelineBarrier2,
+             vk.CmdDispatch, vk.CmdBeginRendering, vk.CmdEndRendering, vk.CmdSetViewport, vk.CmdSetScissor, vk.CmdDraw,
+             vk.CmdCopyBufferToImage, vk.CmdClearColorImage, vk.CmdResetQueryPool, vk.CmdWriteTimestamp2);
+        vk.CmdBeginDebugUtilsLabelEXT = nullptr;
+        vk.CmdEndDebugUtilsLabelEXT = nullptr;
+    }
+    ~NullCommands() { vk_ = kept_; }
+    NullCommands(const NullCommands&) = delete;
+    NullCommands& operator=(const NullCommands&) = delete;
+
+  private:
+    template <class... Arguments>
+    static void drop_one(void (*&function)(Arguments...)) {
+        function = [](Arguments...) {};
+    }
+    template <class... Functions>
+    static void drop(Functions&... functions) {
+        (drop_one(functions), ...);
+    }
+    gpu::Dispatch& vk_;
+    gpu::Dispatch kept_;
+};
 
 const Row* find_row(const std::vector<Row>& rows, std::string_view name) {
     const auto found = std::ranges::find(rows, name, &Row::name);

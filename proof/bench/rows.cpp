@@ -9,10 +9,7 @@
 
 #include "bench/chain/chains.hpp"
 #include "bench/chain/hand_written.hpp"
-#include "bench/chain/interface.hpp"
-#include "bench/chain/plain.hpp"
 #include "bench/chain/recipe.hpp"
-#include "bench/program/scene.hpp"
 
 namespace darkroom::bench {
 

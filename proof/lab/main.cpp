@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// darkroom_lab: tools of whoever changes Darkroom, binds it to a language or makes temporal filters. Nobody installs it.
+// darkroom_lab: tools of whoever changes Darkroom, binds it to a language or makes temporal filters. Nobody installs
+// it.
 #include <CLI/CLI.hpp>
 
 #include "lab/lab.hpp"
-#include "programs/darkroom/flags/run_program.hpp"
+#include "programs/darkroom/flags/program.hpp"
 
 int main(int argc, char** argv) {
     return app::run_program(argc, argv, [](auto program, auto, auto) {

@@ -10,7 +10,7 @@
 #include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "programs/darkroom/flags/device_flags.hpp"
-#include "programs/darkroom/flags/run_program.hpp"
+#include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "programs/darkroom/verify/verify_flags.hpp"

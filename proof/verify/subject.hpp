@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "verify/disturbance.hpp"
+#include "verify/scene.hpp"
 
 namespace darkroom::verify {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "script/bindings.hpp"
+#include "controllers_state.hpp"
 
 #include <algorithm>
 

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <darkroom/effects.hpp>
 #include <filesystem>
@@ -10,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "script/command_reader.hpp"
+#include "script/console_state.hpp"
 #include "script/test_stack.hpp"
 
 namespace darkroom {

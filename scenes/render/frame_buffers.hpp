@@ -3,14 +3,39 @@
 // What the host writes for a frame and the shaders read as set 0: blocks, instances, materials, joints, weights. One
 // FrameBuffers for each frame in flight; buffers grow when a frame needs more than any before it.
 
-#include <array>
+#include <vulkan/vulkan.h>
 
+#include <array>
+#include <span>
+#include <vector>
+
+#include "gpu/device/context.hpp"
 #include "render/light/environment.hpp"
 #include "render/shadow/shadow_pass.hpp"
 #include "render/upload/gpu_scene.hpp"
-#include "render/upload/gpu_scene_sets.hpp"
 
 namespace darkroom::render {
+
+// Descriptor sets whose number is not known beforehand: pools are added as they are needed, and all go together.
+
+class SetAllocator {
+  public:
+    /// `sizes`: descriptors of one set; a pool holds `sets_a_pool` of them.
+    SetAllocator(gpu::Context& context, std::span<const VkDescriptorPoolSize> sizes, std::uint32_t sets_a_pool);
+    SetAllocator(const SetAllocator&) = delete;
+    SetAllocator& operator=(const SetAllocator&) = delete;
+    ~SetAllocator();
+    [[nodiscard]] Result<VkDescriptorSet> allocate(VkDescriptorSetLayout layout);
+
+  private:
+    Result<> add_pool();
+
+    gpu::Context* context_;
+    std::vector<VkDescriptorPoolSize> sizes_;  ///< of a pool
+    std::uint32_t sets_a_pool_;
+    std::vector<VkDescriptorPool> pools_;
+    std::uint32_t left_ = 0;  ///< sets in the last pool
+};
 
 /// An error if a storage buffer of this size is more than shaders of the device can reach.
 [[nodiscard]] Result<> check_storage(const gpu::Context& context, VkDeviceSize size, std::string_view name);

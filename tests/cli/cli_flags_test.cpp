@@ -9,7 +9,7 @@
 
 #include "cli_support.hpp"
 #include "image/frame/frame_file.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
+#include "programs/darkroom/flags/flags.hpp"
 
 namespace darkroom {
 namespace {

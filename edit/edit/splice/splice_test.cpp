@@ -14,7 +14,7 @@
 #include "edit/document.hpp"
 #include "edit/follow/compare.hpp"
 #include "edit/splice/splice.hpp"
-#include "edit/splice/toml_source.hpp"
+#include "edit/splice/toml_editor.hpp"
 #include "edit/test_random_edits.hpp"
 #include "tests/places.hpp"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Wheels, curves and groups of an effect with many colours, held by a mouse.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -7,7 +8,6 @@
 #include <random>
 
 #include "edit/effect_uses.hpp"
-#include "panels/look/color_wheel.hpp"
 #include "panels/look/entry_rows.hpp"
 #include "panels/look/test_look_panels.hpp"
 

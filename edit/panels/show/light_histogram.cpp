@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t head = 6;
 
 /// The stops that are shown: those that occur, by fours, and eight about middle grey.
-struct Range {
+struct ShownStops {
     float least = -8, most = 8;
     /// From 0 at the left to 1.
     [[nodiscard]] float place(float stops) const { return (stops - least) / (most - least); }
@@ -26,8 +26,8 @@ float end_of(const LightHistogram& histogram, std::size_t bin) {
     return histogram.first + histogram.step * static_cast<float>(bin);
 }
 
-Range range_of(const LightHistogram& histogram) {
-    Range out;
+ShownStops range_of(const LightHistogram& histogram) {
+    ShownStops out;
     for (std::size_t bin = 0; bin < histogram.shares.size(); ++bin) {
         if (histogram.shares[bin] <= 0) continue;
         out.least = std::min(out.least, 4 * std::floor(end_of(histogram, bin) / 4));
@@ -36,7 +36,7 @@ Range range_of(const LightHistogram& histogram) {
     return out;
 }
 
-void draw_bins(const Plot& plot, const LightHistogram& histogram, const Range& range) {
+void draw_bins(const Plot& plot, const LightHistogram& histogram, const ShownStops& range) {
     const float most = std::max(*std::ranges::max_element(histogram.shares), 1e-6f);
     const auto fill = [&](float left, float right, float top, ImU32 color) {
         if (right > left) plot.fill(left, 0, right, top, color);
@@ -55,7 +55,7 @@ void draw_bins(const Plot& plot, const LightHistogram& histogram, const Range& r
 }
 
 /// Stops under the plot, as many as there is room for.
-void draw_scale(const Plot& plot, const Range& range) {
+void draw_scale(const Plot& plot, const ShownStops& range) {
     const float em = ImGui::GetFontSize(), a_stop = (plot.max.x - plot.min.x) / (range.most - range.least);
     const float apart = std::max(std::ceil(2 * em / a_stop / 4) * 4, 4.0f);
     for (float stops = std::ceil(range.least / apart) * apart; stops <= range.most; stops += apart) {
@@ -81,7 +81,7 @@ std::optional<LightHistogram> light_histogram_of(std::span<const float> numbers)
 }
 
 void draw_light_histogram(const LightHistogram& histogram) {
-    const Range range = range_of(histogram);
+    const ShownStops range = range_of(histogram);
     const Plot plot = begin_plot("light", {ImGui::GetContentRegionAvail().x, 6 * ImGui::GetFontSize()});
     plot.fill(range.place(histogram.low), 0, range.place(histogram.high), 1,
               faded(ImGui::ColorConvertFloat4ToU32(accent_color), 0.22f));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "panels/show/scope_data.hpp"
+#include "panels/show/scopes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace darkroom::panels {

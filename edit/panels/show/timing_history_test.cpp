@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "panels/show/timing_history.hpp"
+#include "panels/show/timings.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace darkroom::panels {

@@ -2,6 +2,7 @@
 #pragma once
 // The line that a console's commands are typed into: Tab completes a word, arrows go through what was typed before.
 
+#include <darkroom/result.hpp>
 #include <deque>
 #include <functional>
 #include <optional>
@@ -41,6 +42,20 @@ class CommandLine {
     std::string typed_, begun_;     ///< now; before arrows went elsewhere
     std::deque<std::string> kept_;  ///< the newest last
     std::size_t recalled_ = 0;      ///< how far back; 0: what is typed
+};
+
+// Lines of standard input as they come, for a loop that does not wait for them.
+
+class LineInput {
+  public:
+    static constexpr std::size_t longest_line = 512;
+
+    /// Those that have come since the last call. An error, once: a line is too long, and no more are read.
+    [[nodiscard]] darkroom::Result<std::vector<std::string>> take();
+
+  private:
+    std::string begun_;
+    bool is_open_ = true;
 };
 
 }  // namespace app

@@ -6,6 +6,10 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <map>
+#include <utility>
 
 namespace app {
 
@@ -40,5 +44,21 @@ struct PanelRoom {
 [[nodiscard]] PanelSizes moved(const PanelSizes& sizes, Splitter splitter, float x, float y, const PanelRoom& room);
 /// The same with that line where it is at first.
 [[nodiscard]] PanelSizes put_back(const PanelSizes& sizes, Splitter splitter);
+
+// How the panels lay in windows of each size: a file of its user's configuration.
+
+class KnownPanels {
+  public:
+    /// None where there is no such file. Errors are those of the file.
+    [[nodiscard]] static darkroom::Result<KnownPanels> read(const std::filesystem::path& file);
+    [[nodiscard]] darkroom::Result<> write(const std::filesystem::path& file) const;
+
+    /// Those of the window whose size is nearest; nobody knows any: as they are at first.
+    [[nodiscard]] PanelSizes of(VkExtent2D window) const;
+    void set(VkExtent2D window, const PanelSizes& sizes);
+
+  private:
+    std::map<std::pair<std::uint32_t, std::uint32_t>, PanelSizes> known_;  ///< by width and height
+};
 
 }  // namespace app

@@ -17,7 +17,7 @@
 #include "image/compare/contact_sheet.hpp"
 #include "image/picture/write.hpp"
 #include "programs/darkroom/commands.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
+#include "programs/darkroom/flags/flags.hpp"
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 

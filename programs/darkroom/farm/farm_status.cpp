@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/text/param_text.hpp"
-#include "farm.hpp"
 #include "farm_record.hpp"
+#include "programs/darkroom/farm/farm.hpp"
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 

@@ -13,11 +13,10 @@
 
 #include "confined/process.hpp"
 #include "core/text/param_text.hpp"
-#include "farm.hpp"
 #include "farm_process.hpp"
-#include "farm_work.hpp"
+#include "farm.hpp"
+#include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/flags/run_flags.hpp"
-#include "programs/darkroom/flags/run_program.hpp"
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "flags.hpp"
 #include "image/frame/frame_file.hpp"
-#include "number_flag.hpp"
 
 namespace app {
 

@@ -12,7 +12,7 @@
 #include "core/text/param_text.hpp"
 #include "image/table/resource_file.hpp"
 #include "programs/darkroom/effects/named_effects.hpp"
-#include "programs/darkroom/help/describe.hpp"
+#include "programs/darkroom/help/help.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "programs/darkroom/run/ui_source.hpp"
 

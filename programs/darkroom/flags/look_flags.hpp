@@ -6,15 +6,35 @@
 #include <darkroom/look.hpp>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "flags.hpp"
 #include "looks/look_parts.hpp"
-#include "programs/darkroom/run/read_files.hpp"
 
 namespace app {
+
+// Files that were read, so that nothing is written over them.
+
+/// From any thread: a window reads looks while it draws.
+class ReadFiles {
+  public:
+    void add(const std::filesystem::path& file) {
+        const std::lock_guard lock(adding_);
+        files_.insert(file);
+    }
+    [[nodiscard]] std::vector<std::filesystem::path> all() const {
+        const std::lock_guard lock(adding_);
+        return {files_.begin(), files_.end()};
+    }
+
+  private:
+    mutable std::mutex adding_;
+    std::set<std::filesystem::path> files_;
+};
 
 /// Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
 [[nodiscard]] bool is_scene_name(const std::filesystem::path& path);

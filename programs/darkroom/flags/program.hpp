@@ -4,13 +4,16 @@
 // typed. What a flag's value means is for its command to say.
 
 #include <darkroom/result.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "flags.hpp"
+#include "programs/darkroom/commands.hpp"
 
 namespace app {
 
@@ -53,5 +56,17 @@ class Trial {
   private:
     std::unique_ptr<CLI::App> parser_;
 };
+
+// All of a main function: arguments to the commands, and errors to exit codes.
+
+/// Adds the command that is called `asked`, or all of them where none is.
+using AddCommands = std::function<std::vector<Command>(CommandFlags program, std::span<const darkroom::LookEntry> named,
+                                                       std::string_view asked)>;
+
+/// In the environment of what a task of a farm starts: the task's number, with which it ends.
+inline constexpr const char* task_of_farm = "DARKROOM_TASK_OF_FARM";
+
+/// Runs what the arguments ask for. Returns the exit code; errors have been told.
+[[nodiscard]] int run_program(int argc, char** argv, const AddCommands& add_commands);
 
 }  // namespace app

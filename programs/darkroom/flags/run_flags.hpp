@@ -12,10 +12,8 @@
 #include "flags.hpp"
 #include "image/frame/frame_set.hpp"
 #include "image/picture/write.hpp"
-#include "number_flag.hpp"
 #include "ocio_flags.hpp"
 #include "programs/darkroom/run/outputs.hpp"
-#include "programs/darkroom/run/picture_stream.hpp"
 
 namespace app {
 

@@ -10,7 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
-#include "describe.hpp"
+#include "help.hpp"
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/run/report.hpp"
 

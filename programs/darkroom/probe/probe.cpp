@@ -7,13 +7,13 @@
 #include <memory>
 
 #include "core/text/param_text.hpp"
-#include "develop/inspect/prober.hpp"
+#include "develop/inspect/inspector.hpp"
 #include "image/picture/resize.hpp"
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/flags/device_flags.hpp"
+#include "programs/darkroom/flags/flags.hpp"
 #include "programs/darkroom/flags/frame_flags.hpp"
 #include "programs/darkroom/flags/look_flags.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
 #include "programs/darkroom/flags/ocio_flags.hpp"
 #include "programs/darkroom/run/frames.hpp"
 #include "programs/darkroom/run/json.hpp"

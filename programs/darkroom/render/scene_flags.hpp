@@ -10,7 +10,6 @@
 
 #include "looks/camera_lens.hpp"
 #include "programs/darkroom/flags/flags.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
 #include "render/renderer.hpp"
 #include "scene/pose/snapshot.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/flags/flags.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
 
 namespace app {
 

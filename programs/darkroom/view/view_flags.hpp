@@ -11,7 +11,6 @@
 #include "programs/darkroom/flags/flags.hpp"
 #include "programs/darkroom/flags/frame_flags.hpp"
 #include "programs/darkroom/flags/look_flags.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
 #include "programs/darkroom/render/scene_flags.hpp"
 
 namespace app {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "error.hpp"
+#include "parts.hpp"
 #include "plan/text/half.hpp"
 
 namespace darkroom::python {

@@ -6,7 +6,6 @@
 #include <pybind11/pybind11.h>
 
 #include "arrays.hpp"
-#include "error.hpp"
 #include "parts.hpp"
 
 namespace darkroom::python {

@@ -15,7 +15,6 @@
 
 #include "arrays.hpp"
 #include "core/text/param_text.hpp"
-#include "error.hpp"
 #include "looks/look_parts.hpp"
 #include "parts.hpp"
 #include "tables/cube_file.hpp"

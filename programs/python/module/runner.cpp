@@ -12,7 +12,7 @@
 
 #include "arrays.hpp"
 #include "core/text/param_text.hpp"
-#include "error.hpp"
+#include "parts.hpp"
 
 namespace darkroom::python {
 

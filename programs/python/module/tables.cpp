@@ -5,7 +5,6 @@
 #include <pybind11/stl.h>
 
 #include "arrays.hpp"
-#include "error.hpp"
 #include "parts.hpp"
 #include "tables/cube_file.hpp"
 #include "tables/evaluate.hpp"

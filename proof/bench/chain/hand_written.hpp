@@ -4,8 +4,11 @@
 // arithmetic of the five effects of the tail. Each runs alone between two barriers, and has what the composer's kernels
 // have for such a frame: whole images, its workgroup, its formats.
 
+#include <optional>
+
 #include "bench/measure.hpp"
 #include "gpu/kernel/kernel.hpp"
+#include "plan/program.hpp"
 
 namespace darkroom::bench {
 
@@ -29,5 +32,17 @@ struct TailValues {
 /// A row that runs `spec` from the scene to the target. `table` is its second image, if it has one.
 [[nodiscard]] Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
                                      std::span<const std::uint32_t> words = {}, const TableDesc* table = nullptr);
+
+// Passes as one writes them by hand for one's own engine: plain GLSL and Vulkan, without the library's kernels, their
+// blocks or their regions.
+
+enum class PlainPass : std::uint8_t {
+    Copy,  ///< what the calibration pass does
+    Tail,  ///< what the tail does, for a picture that is finite: without guards against NaN
+};
+
+/// A row that runs it from the scene to the target. `tile` is that of the noise, 64x64 of R32G32B32A32_SFLOAT.
+[[nodiscard]] Result<Row> plain_row(Bed& bed, std::string name, PlainPass pass, gpu::Stage stage,
+                                    const TailValues& values, const TableDesc& tile);
 
 }  // namespace darkroom::bench

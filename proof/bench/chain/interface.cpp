@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "interface.hpp"
+#include "recipe.hpp"
 
 #include <darkroom/hud_inertia.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plain.hpp"
+#include "hand_written.hpp"
 
 #include <fmt/format.h>
 

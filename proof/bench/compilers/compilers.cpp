@@ -17,7 +17,6 @@
 #include "core/files.hpp"
 #include "core/thread/parallel.hpp"
 #include "develop/cost/kernel_cost.hpp"
-#include "develop/cost/kernel_table.hpp"
 #include "every_kernel.hpp"
 #include "gpu/device/context.hpp"
 

@@ -4,7 +4,7 @@
 #include <darkroom/describe.hpp>
 
 #include "bench/chain/chains.hpp"
-#include "bench/chain/interface.hpp"
+#include "bench/chain/recipe.hpp"
 
 namespace darkroom::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene.hpp"
+#include "bench/chain/recipe.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // In place of baked.cpp, edits.cpp, scene.cpp and sequence.cpp where what they measure is not built.
 #include "baked.hpp"
+#include "bench/chain/recipe.hpp"
 #include "edits.hpp"
-#include "scene.hpp"
 #include "sequence.hpp"
 
 namespace darkroom::bench {

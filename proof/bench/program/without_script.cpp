@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // In place of controllers.cpp where scripts are not built.
-#include "bench/chain/interface.hpp"
+#include "bench/chain/recipe.hpp"
 
 namespace darkroom::bench {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// darkroom_lab capture: what temporal filters are given of a scene, at several sizes, and the truth that they should find.
+// darkroom_lab capture: what temporal filters are given of a scene, at several sizes, and the truth that they should
+// find.
 #include "capture.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@
 #include "image/frame/sequence.hpp"
 #include "lab/lab.hpp"
 #include "programs/darkroom/flags/device_flags.hpp"
-#include "programs/darkroom/flags/number_flag.hpp"
+#include "programs/darkroom/flags/flags.hpp"
 #include "programs/darkroom/flags/run_flags.hpp"
 #include "programs/darkroom/render/scene_flags.hpp"
 #include "programs/darkroom/run/frames.hpp"

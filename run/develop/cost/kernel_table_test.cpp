@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "develop/cost/kernel_table.hpp"
+#include "develop/cost/kernel_cost.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <darkroom/custom_effect.hpp>
 
 #include "compose/test_stacks/host.hpp"
-#include "develop/inspect/prober.hpp"
 
 namespace darkroom {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/upload/upload_mips.hpp"
+#include "render/upload/upload.hpp"
 
 #include <gtest/gtest.h>
 

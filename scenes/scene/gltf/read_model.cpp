@@ -7,7 +7,6 @@
 #include "image/codec/decoder.hpp"
 #include "scene/gltf/convert.hpp"
 #include "scene/mesh/geometry.hpp"
-#include "scene/mesh/tangents.hpp"
 #include "scene/model.hpp"
 
 namespace darkroom::scene {

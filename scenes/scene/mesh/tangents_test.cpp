@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "scene/mesh/tangents.hpp"
+#include "scene/mesh/geometry.hpp"
 
 namespace darkroom::scene {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/read/prefab_expand.hpp"
+#include "scene_reader.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

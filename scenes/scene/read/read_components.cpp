@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/read/read_components.hpp"
+#include "scene_reader.hpp"
 
 #include <fmt/format.h>
 

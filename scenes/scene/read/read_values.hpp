@@ -6,6 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -15,9 +19,122 @@
 #include <vector>
 
 #include "scene/math.hpp"
-#include "scene/read/read_tree.hpp"
+#include "toml/toml_text.hpp"
 
 namespace darkroom::scene::reading {
+
+// The tables of scene files as a tree that can be merged: prefabs lay overrides over templates, archetypes lie under
+// entities, and every value keeps the place it came from. Leaves point into the parsed files, which outlive the tree.
+
+// What is wrong with a scene, collected with its places while the reading goes on, so that one run lists it all. Texts
+// are made only for what may be shown: a hostile file has millions of faults.
+
+/// A place in one of the files that a scene is made of; file 0 is the scene itself, others hold prefabs.
+struct Place {
+    std::uint32_t file = 0, line = 0, column = 0;
+    friend auto operator<=>(const Place&, const Place&) = default;
+};
+
+class Report {
+  public:
+    explicit Report(bool is_strict) : is_strict_(is_strict) {}
+
+    std::uint32_t add_file(std::string shown_name);
+    [[nodiscard]] bool is_strict() const { return is_strict_; }
+    /// "file:line:column"
+    [[nodiscard]] std::string show(Place place) const;
+
+    /// `text` is a function that makes the text. An error ends the reading, once everything has been looked at.
+    template <class Text>
+    void error(Place place, Text&& text) {
+        add(errors_, place, std::forward<Text>(text));
+    }
+    /// A warning, or an error if the reading is strict.
+    template <class Text>
+    void slip(Place place, Text&& text) {
+        add(is_strict_ ? errors_ : warnings_, place, std::forward<Text>(text));
+    }
+    /// ", did you mean 'x'?" or nothing; nothing either after many, since looking for names is slow.
+    [[nodiscard]] std::string suggestion(std::string_view wrong, std::span<const std::string> names);
+
+    /// The warnings in the order of the files go to the list, the errors become one line.
+    [[nodiscard]] Result<> finish(std::vector<std::string>* warnings);
+
+  private:
+    struct Problem {
+        Place place;
+        std::string text;
+    };
+    struct Problems {
+        std::vector<Problem> kept;
+        std::size_t count = 0;
+    };
+    static constexpr std::size_t max_kept = 1000, max_shown = 20, max_suggestions = 64;
+
+    template <class Text>
+    void add(Problems& problems, Place place, Text&& text) {
+        ++problems.count;
+        if (problems.kept.size() < max_kept) problems.kept.push_back({place, text()});
+    }
+    [[nodiscard]] std::vector<std::string> lines(Problems& problems) const;
+
+    bool is_strict_;
+    std::vector<std::string> shown_names_;
+    Problems errors_, warnings_;
+    std::size_t suggestions_ = 0;
+};
+
+struct Member;
+
+struct Value {
+    const toml::node* node = nullptr;  ///< as the file has it; of a merged table: that of the lower layer
+    Place place;
+    std::string_view text;        ///< of a string, with its prefix put in
+    std::vector<Member> members;  ///< of a table, sorted by key
+    [[nodiscard]] bool is_table() const { return node != nullptr && node->is_table(); }
+    [[nodiscard]] bool is_text() const { return node != nullptr && node->is_string(); }
+};
+
+struct Member {
+    std::string_view key;
+    Place place;
+    Value value;
+};
+
+[[nodiscard]] const Value* find(const Value& table, std::string_view key);
+/// How many values a table holds, at any depth.
+[[nodiscard]] std::size_t member_count(const Value& table);
+/// Lays `over` on `base`, table into table; anything else is replaced.
+void merge(Value& base, const Value& over);
+/// "1.5", "\"yes\"", "[1, 2, 3]", "a table".
+[[nodiscard]] std::string show(const Value& value);
+
+[[nodiscard]] inline Place place_of(const toml::source_region& source, std::uint32_t file) {
+    return {file, source.begin.line, source.begin.column};
+}
+
+/// Makes trees, and owns the texts that prefixes were put into.
+class TreeBuilder {
+  public:
+    explicit TreeBuilder(Report& report) : report_(report) {}
+    /// `prefix` goes where the text has ${PREFIX}; null: texts stay as they are.
+    [[nodiscard]] Value build(const toml::node& node, std::uint32_t file, const std::string* prefix = nullptr);
+    /// Counts values that are copied; false, and an error, where that makes more than a scene may hold.
+    [[nodiscard]] bool charge(std::size_t members, Place place);
+    /// A copy of `text` that lives as long as the builder.
+    [[nodiscard]] std::string_view keep(std::string text);
+
+  private:
+    [[nodiscard]] Value build(const toml::node& node, std::uint32_t file, const std::string* prefix, int depth);
+
+    Report& report_;
+    std::deque<std::string> texts_;
+    std::size_t members_ = 0;
+};
+
+inline constexpr std::string_view prefix_mark = "${PREFIX}";
+/// `text` with every ${PREFIX} replaced.
+[[nodiscard]] std::string with_prefix(std::string_view text, std::string_view prefix);
 
 /// Bounds of a number. Without others, a magnitude that float and the maths of a renderer can bear.
 struct Interval {
