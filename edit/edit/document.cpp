@@ -118,6 +118,15 @@ void LookDocument::redo() {
     take(std::move(step.look));
 }
 
+void Watch::add(const std::filesystem::path& file, Clock::time_point read) {
+    // Files have the time of the last tick.
+    constexpr std::chrono::milliseconds tick{10};
+    if (files_.contains(file)) return;
+    const FileStamp stamp = stamp_of(file);
+    const auto saved = std::chrono::seconds(stamp.seconds) + std::chrono::nanoseconds(stamp.nanoseconds);
+    files_.emplace(file, saved > (read - tick).time_since_epoch() ? FileStamp{} : stamp);
+}
+
 std::vector<std::filesystem::path> Watch::take_changes() {
     std::vector<std::filesystem::path> changed;
     for (auto& [file, stamp] : files_) {

@@ -4,6 +4,7 @@
 // draws nothing: a Composer is taken along with darkroom::follow, panels and consoles change it with the functions of
 // edit/edits.hpp.
 
+#include <chrono>
 #include <cstdint>
 #include <darkroom/look.hpp>
 #include <deque>
@@ -22,9 +23,9 @@ namespace darkroom::edit {
 /// Tells when files are others than when it was last asked.
 class Watch {
   public:
-    void add(const std::filesystem::path& file) {
-        if (!files_.contains(file)) files_.emplace(file, stamp_of(file));
-    }
+    using Clock = std::chrono::system_clock;
+    /// `read`: when reading it began. What was saved since is a change.
+    void add(const std::filesystem::path& file, Clock::time_point read = Clock::now());
     /// Takes a file as it is now.
     void take(const std::filesystem::path& file) { files_[file] = stamp_of(file); }
     /// Those that are others than they were, which are then taken as they are now. One that is gone counts as unchanged
@@ -110,13 +111,15 @@ class LookDocument {
     void remember(std::string what);
     void give_ids(Look& look);
     Result<> check(const Look& next) const;
-    void watch_files();
+    void watch_files(Watch::Clock::time_point read = Watch::Clock::now());
     Result<bool> reload();
     /// Entries of files' effects are of those that the files hold now, and keep the values that both have.
     void keep_effects(Look& look, const Look& now) const;
     /// `is_spliced`: into the text that was read; else all is written anew.
     Result<> write(const std::filesystem::path& file, bool is_spliced);
     Result<Look> read(std::string_view text, const Look& ids_of);
+    /// A look's file that says what differs from the defaults; where a flat table cannot, all of it.
+    [[nodiscard]] std::string new_text() const;
 
     std::filesystem::path file_;
     LookOptions options_;

@@ -89,6 +89,7 @@ Result<> load_again(Look& look, const LookOptions& options) {
 
 Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookOptions options,
                                         const CameraLens& lens) {
+    const auto read = Watch::Clock::now();
     if (options.folder.empty()) options.folder = file.parent_path();
     DARKROOM_TRY_VALUE(std::string text, read_look_text(file));
     std::vector<std::string> warnings;
@@ -101,14 +102,15 @@ Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookO
     out.lens_ = lens;
     out.text_ = out.read_text_ = std::move(text);
     out.warnings_ = std::move(warnings);
-    out.watch_files();
+    out.watch_ = {};
+    out.watch_files(read);
     return out;
 }
 
-void LookDocument::watch_files() {
-    if (!file_.empty()) watch_.add(file_);
+void LookDocument::watch_files(Watch::Clock::time_point read) {
+    if (!file_.empty()) watch_.add(file_, read);
     const auto add = [&](const std::string& name) {
-        if (!name.empty()) watch_.add(options_.folder / name);
+        if (!name.empty()) watch_.add(options_.folder / name, read);
     };
     for (const LookEntry& entry : look_.entries) {
         add(entry.effect_file);
@@ -157,7 +159,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
                 fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
         return text;
     };
-    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : write_look(look_));
+    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_, lens_) : new_text());
     if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_, lens_));
     if (!text) return failure(text.error());
     DARKROOM_TRY(write_file(file, std::as_bytes(std::span(*text)), true));
@@ -175,8 +177,20 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
     return {};
 }
 
+std::string LookDocument::new_text() const {
+    constexpr std::string_view nothing = "format = 1\n\n[post_process]\n";
+    LookOptions options = options_;
+    options.load_resource = stand_in;
+    options.is_scene = false;
+    if (const Result<Look> base = parse_look(nothing, "", options, lens_))
+        if (Result<std::string> text = splice_look(nothing, *base, look_, lens_))
+            if (const Result<Look> again = parse_look(*text, "", options, lens_); again && reads_as(*again, look_))
+                return std::move(*text);
+    return write_look(look_);
+}
+
 Result<std::string> LookDocument::unsaved_text() const {
-    if (file_.empty()) return write_look(look_);
+    if (file_.empty()) return new_text();
     Result<std::string> text = splice_look(read_text_, read_, look_, lens_);
     return text ? text : splice_look(text_, saved_, look_, lens_);
 }
@@ -224,6 +238,7 @@ void LookDocument::keep_effects(Look& look, const Look& now) const {
 }
 
 Result<bool> LookDocument::reload() {
+    const auto began = Watch::Clock::now();
     std::string text;
     if (!file_.empty()) {
         DARKROOM_TRY_VALUE(std::string now, read_look_text(file_));
@@ -257,7 +272,7 @@ Result<bool> LookDocument::reload() {
     read_ = base ? std::move(*base) : saved;
     saved_ = std::move(saved);
     text_ = std::move(text);
-    watch_files();
+    watch_files(began);
     if (is_same(next, look_)) {
         is_changed_ = !says_same(look_, saved_);
         return false;

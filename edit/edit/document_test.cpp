@@ -297,8 +297,23 @@ TEST_F(Document, SaveAsKeepsTheTextOrWritesAnew) {
     const auto read = read_look(folder_ / "c.toml");
     ASSERT_TRUE(read) << read.error().text;
     EXPECT_TRUE(says_same(*read, fresh.look()));
+    EXPECT_EQ(text_of(folder_ / "c.toml"), "format = 1\n\n[post_process]\norder = \"scene_linear\"\nexposure = 3.0\n")
+        << "no default";
     EXPECT_FALSE(fresh.save_as(folder_ / "nowhere" / "c.toml"));
     EXPECT_EQ(fresh.file(), folder_ / "c.toml");
+}
+
+// Whoever reads a file says when that began: what was saved meanwhile may not be what was read.
+TEST_F(Document, WhatIsSavedWhileItIsReadIsAChange) {
+    const fs::path before = write("before", "1"), meanwhile = write("meanwhile", "1");
+    const auto read = Watch::Clock::now();
+    fs::last_write_time(before, fs::file_time_type::clock::now() - std::chrono::seconds(1));
+    fs::last_write_time(meanwhile, fs::file_time_type::clock::now() + std::chrono::seconds(1));
+    Watch watch;
+    watch.add(before, read);
+    watch.add(meanwhile, read);
+    EXPECT_EQ(watch.take_changes(), std::vector{meanwhile});
+    EXPECT_EQ(watch.take_changes(), std::vector<fs::path>{});
 }
 
 TEST_F(Document, AWrongFileIsToldOnceAndKeepsTheLook) {

@@ -306,22 +306,34 @@ Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view befo
     return name_of_made(look);
 }
 
-Result<> take_values(Look& look, const Composer& composer) {
+ComposerValues::ComposerValues(const Composer& composer) {
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const Handle handle = composer.entry(i);
+        const EntryDesc& desc = *composer.desc(handle);
+        const auto words = composer.words(handle);
+        entries_[desc.name] = {{words.begin(), words.end()}, desc.enabled, desc.opacity};
+    }
+}
+
+Result<> ComposerValues::take_changes(Look& look, const Composer& now) const {
     if (!look.is_enabled) return {};
-    const std::vector<std::string> names = entry_names(look);
-    for (const std::string& name : names) {
-        const auto handle = composer.find(name);
-        LookEntry* const entry = handle ? find_entry(look, name) : nullptr;
-        if (entry == nullptr || composer.info(*handle) != entry->effect) continue;
-        const EntryDesc& desc = *composer.desc(*handle);
-        for (const ParamInfo& row : entry->effect->parameters.rows)
-            if (row.kind != Kind::Resource)
-                std::ranges::copy(composer.words(*handle).subspan(row.word, row.words),
-                                  entry->words.begin() + row.word);
-        entry->state.enabled = desc.enabled;
+    for (const std::string& name : entry_names(look)) {
+        const auto handle = now.find(name);
+        const auto before = entries_.find(name);
+        LookEntry* const entry = handle && before != entries_.end() ? find_entry(look, name) : nullptr;
+        if (entry == nullptr || now.info(*handle) != entry->effect) continue;
+        const Entry& was = before->second;
+        const EntryDesc& desc = *now.desc(*handle);
+        const auto words = now.words(*handle);
+        for (const ParamInfo& row : entry->effect->parameters.rows) {
+            const auto is = words.subspan(row.word, row.words);
+            if (row.kind != Kind::Resource &&
+                !std::ranges::equal(is, std::span(was.words).subspan(row.word, row.words)))
+                std::ranges::copy(is, entry->words.begin() + row.word);
+        }
+        if (desc.enabled != was.is_enabled) entry->state.enabled = desc.enabled;
         const auto opacity = std::bit_cast<std::uint32_t>(desc.opacity);
-        if (desc.opacity == entry->state.opacity) continue;
-        DARKROOM_TRY(set_state(look, name, "opacity", {&opacity, 1}));
+        if (desc.opacity != was.opacity) DARKROOM_TRY(set_state(look, name, "opacity", {&opacity, 1}));
     }
     return {};
 }

@@ -8,9 +8,11 @@
 #include <cstdint>
 #include <darkroom/look.hpp>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace darkroom::edit {
 
@@ -60,8 +62,20 @@ Result<std::string> add_effect(Look& look, const EffectInfo& effect, std::string
 /// The same for an entry with its values, such as that of a custom effect (darkroom::custom_entry).
 Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view before = {});
 
-/// Takes values, switches and opacities that others (a console) have set in a Composer which follows the look. Tables
-/// are the look's.
-Result<> take_values(Look& look, const Composer& composer);
+/// Values, switches and opacities of a Composer which follows a look, to tell what others (a console) set in it.
+class ComposerValues {
+  public:
+    explicit ComposerValues(const Composer& composer);
+    /// Takes over what is another in the Composer since then. Tables are the look's.
+    Result<> take_changes(Look& look, const Composer& now) const;
+
+  private:
+    struct Entry {
+        std::vector<std::uint32_t> words;
+        bool is_enabled = true;
+        float opacity = 1;
+    };
+    std::map<std::string, Entry> entries_;
+};
 
 }  // namespace darkroom::edit

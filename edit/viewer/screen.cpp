@@ -189,11 +189,14 @@ void Screen::draw_console(const VkRect2D& area, darkroom::Console* console) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
     ImGui::BeginChild("##printed", {0, -ImGui::GetFrameHeightWithSpacing()});
     for (const std::string& text : printed_) ImGui::TextWrapped("%s", text.c_str());
-    ImGui::SetScrollHereY(1);
+    // Who has scrolled back reads on there, whatever is printed.
+    if (ImGui::IsWindowAppearing() || ImGui::GetScrollY() >= ImGui::GetScrollMaxY()) ImGui::SetScrollHereY(1);
     ImGui::EndChild();
     ImGui::SetNextItemWidth(-1);
-    // An open console has the keyboard, also after a click elsewhere, unless somebody types into another widget.
-    if (ImGui::IsWindowAppearing() || !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+    // An open console has the keyboard, also after a click elsewhere, unless somebody types into another widget or
+    // chooses from a list.
+    const bool has_popup = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (ImGui::IsWindowAppearing() || (!ImGui::IsAnyItemActive() && !has_popup)) ImGui::SetKeyboardFocusHere();
     const auto names = [console](std::string_view begin) {
         return console != nullptr ? console->words(begin) : std::vector<std::string>();
     };

@@ -107,12 +107,14 @@ darkroom::Look Viewer::look_of(Side side) const {
 Result<LookView*> Viewer::view(Side side) {
     std::unique_ptr<LookView>& view = views_[static_cast<std::size_t>(side)];
     if (view) return view.get();
+    // Nothing happens to a look that is switched off.
+    const Timeline timeline = side == Side::Off ? Timeline() : job_.timeline;
     auto made = std::make_unique<LookView>(*device_, LookView::Desc{.frames_in_flight = frames_in_flight,
                                                                     .kernels = job_.kernels,
                                                                     .fuse = job_.fuse,
                                                                     .makes_light = is_high_range(),
                                                                     .enlarges = job_.frame_time.has_value(),
-                                                                    .keeps = job_.timeline.entries()});
+                                                                    .timeline = timeline});
     DARKROOM_TRY(made->show(look_of(side)));
     view = std::move(made);
     return view.get();
@@ -150,9 +152,10 @@ Result<> Viewer::turn() {
 }
 
 void Viewer::move_time(double passed) {
-    previous_time_ = time_;
     delta_time_ = is_fixed() ? job_.step : std::min(passed, longest_frame);
+    // What stands still keeps its motion, so that a blur of it can be tuned.
     if (is_paused_) return;
+    previous_time_ = time_;
     if (shown_frames_ > 0) ++frame_index_;
     // Of the frames that are counted the first is at the time that was asked for.
     if (is_fixed() && shown_frames_ == 0) {
@@ -194,7 +197,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
                       {.delta_time = delta_time_,
                        .picture = wanted,
                        .has_keys = !gui_->wants_keys(),
-                       .has_mouse = !gui_->wants_mouse() && !screen_.picture().is_busy(),
+                       .has_mouse = is_mouse_of_camera(),
                        .ground = ground_ ? &*ground_ : nullptr},
                       scene_->snapshot());
         is_led_ = !is_same_place(camera_->orbit(scene_->snapshot()), before);

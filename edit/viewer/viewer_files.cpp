@@ -113,9 +113,10 @@ Result<> Viewer::read_config() {
     darkroom::Console& console = *interface_->console();
     console.take_defaults();
     if (!has_config()) return {};
+    const darkroom::edit::ComposerValues before(console.composer());
     settle("configuration", console.read_config(config_file()));
     return document_->edit("the configuration",
-                           [&](darkroom::Look& look) { return darkroom::edit::take_values(look, console.composer()); });
+                           [&](darkroom::Look& look) { return before.take_changes(look, console.composer()); });
 }
 
 // Whoever takes them sees what they change, and can undo it.

@@ -80,7 +80,6 @@ Result<> Viewer::record(const PresentFrame& frame) {
         DARKROOM_TRY_VALUE(
             input.ui, interface_->record(frame.commands, frame.slot, full_extent_, made_extent_, window_->scale()));
     }
-    DARKROOM_TRY(job_.timeline.advance(look->composer(), input.time));
     const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side)
         if (is_shown[side] && !(is_kept && views_[side] && views_[side]->is_current()))

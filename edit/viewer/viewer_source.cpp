@@ -27,6 +27,7 @@ auto caught(const std::filesystem::path& file, const Make& make) -> decltype(mak
 }  // namespace
 
 Result<> Viewer::make_source() {
+    const auto read = darkroom::edit::Watch::Clock::now();
     if (!job_.scene.empty()) {
         SceneSource::Desc& desc = job_.scene_desc;
         desc.render.frames_in_flight = frames_in_flight;
@@ -38,7 +39,7 @@ Result<> Viewer::make_source() {
                            FrameSource::create(*device_, job_.frames, job_.frame_desc));
         take_frames(std::move(made));
     }
-    watch_source();
+    watch_source(read);
     return {};
 }
 
@@ -70,10 +71,10 @@ void Viewer::follow_lens() {
     if (document_) document_->follow_lens(document_->file() == job_.scene ? darkroom::CameraLens() : lens());
 }
 
-void Viewer::watch_source() {
+void Viewer::watch_source(darkroom::edit::Watch::Clock::time_point read) {
     source_files_ = {};
     if (scene_ != nullptr)
-        for (const std::filesystem::path& file : source_->files()) source_files_.add(file);
+        for (const std::filesystem::path& file : source_->files()) source_files_.add(file, read);
 }
 
 // The new one is made beside the frames, which go on with the old one.
@@ -81,7 +82,9 @@ void Viewer::reload_source() {
     take_other_picture();
     if (opening_.valid()) return take_opened();
     if (!coming_.valid()) {
+        if (!opens_next_.empty()) return open_subject(std::exchange(opens_next_, {}));
         if (!source_files_.take_change()) return;
+        reading_since_ = darkroom::edit::Watch::Clock::now();
         coming_ = start_beside([this, desc = job_.scene_desc, file = job_.scene] {
             return caught(file, [&] { return SceneSource::create(*device_, file, desc); });
         });
@@ -93,14 +96,18 @@ void Viewer::reload_source() {
     if (Result<> done = presenter_->wait(); !done) return settle("scene", done);
     source_warnings_.clear();
     take_scene(std::move(*made));
-    watch_source();
+    watch_source(reading_since_);
     settle("scene", {});
     screen_.clear_error("source");
     tell(fmt::format("read {} again", job_.scene.filename().string()));
 }
 
 void Viewer::open_subject(const std::filesystem::path& file) {
-    if (opening_.valid() || coming_.valid()) return;
+    if (opening_.valid() || coming_.valid()) {
+        opens_next_ = file;
+        return tell(fmt::format("{} is read next", darkroom::printable(file.filename().string())));
+    }
+    reading_since_ = darkroom::edit::Watch::Clock::now();
     tell(fmt::format("reading {}", darkroom::printable(file.filename().string())));
     const bool is_scene = file.extension() == ".toml" || darkroom::scene::is_model_path(file);
     opening_ = start_beside([this, file, is_scene, scene = job_.scene_desc, frame = job_.frame_desc] {
@@ -196,7 +203,7 @@ void Viewer::take_opened() {
     } else {
         take_frames(std::move(opened->frames));
     }
-    watch_source();
+    watch_source(reading_since_);
     tell(fmt::format("opened {}", darkroom::printable(opened->file.filename().string())));
 }
 

@@ -78,6 +78,9 @@ class Viewer {
 
     // viewer_keys.cpp
     void obey_keys();
+    /// Is the mouse the camera's? Where a button went down decides until it is up, and not the panels of the frame
+    /// before, which know an older place.
+    [[nodiscard]] bool is_mouse_of_camera();
     void obey(KeyAction action, std::uint32_t function_key);
     void toggle_effects(std::uint32_t function_key);
     void obey_camera(KeyAction action);
@@ -137,7 +140,7 @@ class Viewer {
     [[nodiscard]] darkroom::CameraLens lens() const;
     void follow_lens();
     void take_frames(std::unique_ptr<FrameSource> frames);
-    void watch_source();
+    void watch_source(darkroom::edit::Watch::Clock::time_point read);
     void reload_source();
     void open_subject(const std::filesystem::path& file);
     /// To compare with: a look, or a picture, which is read beside the frames.
@@ -226,6 +229,7 @@ class Viewer {
     ScaleChoice pace_{{1, 0.5, 0.25}, longest_preview};
     std::uint32_t moves_ = 0;                          ///< frames that were moved by hand, one behind the other
     bool is_led_ = false;                              ///< a hand has just moved the camera
+    bool is_button_down_ = false, has_mouse_ = false;  ///< in the frame before; see is_mouse_of_camera()
     double scale_ = 1;                                 ///< of the sides of what is drawn to those of the whole picture
     VkExtent2D full_extent_{};                         ///< of the whole picture
     VkExtent2D made_extent_{};                         ///< of the picture that is made
@@ -244,6 +248,8 @@ class Viewer {
     darkroom::edit::Watch source_files_;
     std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
     std::future<darkroom::Result<Opened>> opening_;
+    darkroom::edit::Watch::Clock::time_point reading_since_;  ///< that of either
+    std::filesystem::path opens_next_;             ///< asked for meanwhile
     std::filesystem::path saved_as_;  ///< the document's file, when it was last looked at
     std::string titled_;              ///< what the window is called by
     std::vector<darkroom::panels::Messages::Said> source_warnings_;

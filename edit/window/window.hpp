@@ -65,6 +65,8 @@ class Window {
     /// Is it down by itself? A key of a shortcut is not, even after Control has been let go.
     [[nodiscard]] bool is_held(int key) const;
     [[nodiscard]] bool is_button_down(int button) const;
+    /// Where the mouse is, in pixels of the window from its top left corner.
+    [[nodiscard]] std::array<double, 2> mouse() const;
     /// How far the mouse went since the last poll, in pixels, and its wheel, in notches.
     [[nodiscard]] std::array<double, 2> mouse_moved() const;
     [[nodiscard]] double wheel() const;

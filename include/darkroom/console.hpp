@@ -72,7 +72,8 @@ class Console {
     /// Runs a file that write_config() wrote. A file that is not there is no error. What it says of variables that the
     /// stack does not have is kept for the next write_config().
     Result<> read_config(const std::filesystem::path& path);
-    /// Writes the archived variables, whole or not at all: those whose row says so, and those that `seta` named.
+    /// Writes the archived variables that commands, set() or read_config() have set and `reset` has not taken back, whole
+    /// or not at all. Archived are those whose row says so, and those that `seta` named.
     [[nodiscard]] Result<> write_config(const std::filesystem::path& path) const;
 
     [[nodiscard]] Composer& composer() const;

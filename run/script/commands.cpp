@@ -267,7 +267,9 @@ Result<> Run::inc(Words arguments) {
 
 Result<> Run::reset(Words arguments) {
     DARKROOM_TRY_VALUE(const auto variable, look_up(arguments[0]));
-    return write(arguments[0], variable, default_text(variable));
+    DARKROOM_TRY(write(arguments[0], variable, default_text(variable)));
+    state_.set_by_hand.erase(name_of(*state_.composer, variable));
+    return {};
 }
 
 Result<> Run::reset_where(bool archived_alone) {
@@ -276,6 +278,7 @@ Result<> Run::reset_where(bool archived_alone) {
     for (const auto& [name, variable] : all) {
         if (state_.is_read_only(variable) || (archived_alone && !state_.is_archived(variable))) continue;
         DARKROOM_TRY(write(name, variable, default_text(variable)));
+        state_.set_by_hand.erase(name_of(*state_.composer, variable));
     }
     return {};
 }

@@ -61,6 +61,7 @@ Result<std::string> Console::State::write(std::string_view name, const script::V
     const std::string_view row = variable.row->name;
     DARKROOM_TRY(owner ? composer->set_override(variable.entry, row, *owner, read.words)
                        : composer->set(variable.entry, row, read.words));
+    if (!owner) set_by_hand.insert(script::name_of(*composer, variable));
     return std::move(read.remark);
 }
 
@@ -167,7 +168,10 @@ Result<> Console::write_config(const std::filesystem::path& path) const try {
         const std::optional<script::Variable> first = script::find_variable(composer, variable.row->also);
         const bool has_other_name = first && first->entry == variable.entry && first->row == variable.row;
         if (has_other_name ? name != variable.row->also : !is_sayable(name)) continue;
-        const bool is_asked_for = state_->archived.contains(script::name_of(composer, variable));
+        // The values of a look are its own, and not those of the next one.
+        const std::string own = script::name_of(composer, variable);
+        if (!state_->set_by_hand.contains(own)) continue;
+        const bool is_asked_for = state_->archived.contains(own);
         lines[name] = fmt::format("{}\"{}\" \"{}\"", is_asked_for ? "seta " : "", name, state_->text(variable));
     }
     std::string text = "// Written by the program; variables that are archived.\n";

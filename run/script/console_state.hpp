@@ -92,7 +92,7 @@ struct Console::State {
     Composer* composer = nullptr;
     ConsoleDesc desc;
     std::map<std::uint32_t, std::vector<std::uint32_t>> entry_defaults;  ///< by handle
-    std::set<std::string> locked, archived;                              ///< `<entry>.<member>`
+    std::set<std::string> locked, archived, set_by_hand;                 ///< `<entry>.<member>`
     std::map<std::string, std::string> kept;  ///< of a configuration file: lines for variables that are not there
 };
 

@@ -21,8 +21,8 @@ constexpr std::uint32_t frames_to_load = 20;
 constexpr int max_trace_levels = 10, max_trace_lines = 30;
 
 // The functions that Lua calls hold no objects with destructors: see sandbox.hpp.
-// The innermost levels alone; luaL_traceback, which tells the outermost, too, walks a deep stack many times. Lines become
-// one at once: a function of Lua's may push LUA_MINSTACK values, and nothing checks that it does not push more.
+// The innermost levels alone; luaL_traceback, which tells the outermost, too, walks a deep stack many times. Lines
+// become one at once: a function of Lua's may push LUA_MINSTACK values, and nothing checks that it does not push more.
 int trace(lua_State* lua) {
     const char* text = lua_tostring(lua, 1);
     if (text == nullptr) text = lua_pushfstring(lua, "the error is a %s", luaL_typename(lua, 1));

@@ -10,7 +10,15 @@ namespace darkroom::test {
 
 namespace {
 
-class CliViewer : public ViewerFixture {};
+class CliViewer : public ViewerFixture {
+  protected:
+    void write_grey_frame() {
+        FrameFile frame;
+        frame.color = Picture(64, 36);
+        for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = i % 4 == 3 ? 1.0F : 0.125F;
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+    }
+};
 
 TEST_F(CliViewer, APictureIsThatOfRender) {
     for (const auto& [scene, size] : {std::pair("dungeon", "320x180"), std::pair("showcase", "333x217")}) {
@@ -181,6 +189,118 @@ TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
     EXPECT_LE(difference(picture("developed.png"), shown), 1.001 / 255);
 }
 
+// Of a frame that `render` makes at that time: what moves keeps its motion while the time stands still.
+TEST_F(CliViewer, APausedSceneHasItsMotion) {
+    const std::string scene = scenes_folder + "showcase.scene.toml";
+    const std::vector<std::string> blurred{"--motion-blur-enabled", "on", "--motion-blur-shutter-angle", "360"};
+    const auto rendered = [&](const std::vector<std::string>& flags) {
+        std::vector<std::string> line{
+            "render", scene, "--size",         "320x180", "--fps",  "6", "--samples", "1",
+            "--msaa", "4",   "--fxaa-enabled", "off",     "--time", "2", "-o",        path("render.png")};
+        line.insert(line.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(line);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return picture("render.png");
+    };
+    const Picture sharp = rendered({}), moving = rendered(blurred);
+    ASSERT_GT(difference(sharp, moving), 0.02);
+    std::vector<std::string> play{"play", scene,      "--size", "320x180", "--fxaa-enabled", "off", "--time",
+                                  "2",    "--paused", "--fps",  "6"};
+    play.insert(play.end(), blurred.begin(), blurred.end());
+    start(play);
+    EXPECT_LE(difference(moving, shot()), 1.001 / 255);
+    leave();
+}
+
+// What an event sets is the moment's: no command takes it into the look, no step of undo takes it back.
+TEST_F(CliViewer, EventsDoNotBecomeTheLook) {
+    const std::string look = write("my.toml", "[post_process]\nexposure = 1.0\n");
+    const std::string events = write("events.toml", "[[event]]\ntime = 0.0\nset = { \"vignette.intensity\" = 1.0 }\n");
+    write_grey_frame();
+    start({"edit", path("frame.exr"), "--look", look, "--events", events, "--size", "1280x720"});
+    const Picture with_event = shot();
+    command("exposure.exposure 2");
+    press("ctrl+z", "undo: exposure.exposure 2");
+    EXPECT_EQ(difference(with_event, shot()), 0);
+    command("exposure.exposure 3");
+    press("ctrl+s", "saved my.toml");
+    EXPECT_EQ(content(look), "[post_process]\nexposure = 3.0\n");
+    // Both sides of a comparison have it, as if the look itself had it.
+    const auto compared = [&](const char* number) {
+        press("b", "B compare: on");
+        click("view/right");
+        press("Up");  // from "off" to "saved"
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        press("space");
+        std::this_thread::sleep_for(std::chrono::seconds(2));
+        press("shift+F12", fmt::format("stored darkroom-window-{}.png", number));
+        leave();
+        return picture(fmt::format("darkroom-window-{}.png", number));
+    };
+    const Picture by_event = compared("0001");
+    write("my.toml", "[post_process]\nexposure = 3.0\nvignette_intensity = 1.0\n");
+    start({"edit", path("frame.exr"), "--look", look, "--size", "1280x720"});
+    const Picture by_look = compared("0002");
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < by_event.pixels.size(); i += 4)
+        if (std::abs(by_event.pixels[i] - by_look.pixels[i]) > 0.05F) ++others;
+    EXPECT_LT(others, 20000U) << "of the words beside the picture";
+}
+
+// Where an event turns the view, the interface lags behind as in `render`.
+TEST_F(CliViewer, TheInterfaceObeysEventsOfTheHead) {
+    const std::string events = write("events.toml", "[[event]]\ntime = 1.9\nyaw = 40.0\njump = true\n");
+    const std::string hud = write("hud.svg",
+                                  "<svg xmlns='http://www.w3.org/2000/svg' width='320' height='180'>"
+                                  "<rect x='100' y='60' width='60' height='40' fill='#0f0'/></svg>");
+    const auto made = [&](const std::string& command, std::vector<std::string> more, const std::string& file) {
+        std::vector<std::string> line{command,          scenes_folder + "dungeon.scene.toml",
+                                      "--size",         "320x180",
+                                      "--ui",           hud,
+                                      "--fxaa-enabled", "off",
+                                      "--time",         "2",
+                                      "--ui-warp"};
+        line.insert(line.end(), more.begin(), more.end());
+        const Outcome outcome = run(line);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return picture(file);
+    };
+    const auto rendered = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"--samples", "1", "--msaa", "4", "-o", path("render.png")});
+        return made("render", more, "render.png");
+    };
+    const Picture moved = rendered({"--events", events});
+    EXPECT_GT(difference(moved, rendered({})), 0.1);
+    EXPECT_LE(difference(moved, made("play", {"--events", events, "--screenshot", path("shown.png")}, "shown.png")),
+              1.001 / 255);
+}
+
+TEST_F(CliViewer, TheConsoleHasItsKeys) {
+    write_grey_frame();
+    start({"edit", path("frame.exr"), "--size", "1280x720"});
+    command("exposure.exposure 2");
+    press("grave", "console: on");
+    press("ctrl+z");
+    press("ctrl+c");
+    press("grave", "console: off");
+    EXPECT_EQ(count("undo:") + count("stored frame"), 0U) << said();
+    press("ctrl+z", "undo: exposure.exposure 2");
+    leave();
+}
+
+// Frames follow each other without a rest: the mouse comes down on the panels before one has seen it there.
+TEST_F(CliViewer, ADragThatBeginsOnThePanelsMovesNoCamera) {
+    start({"edit", scenes_folder + "dungeon.scene.toml", "--size", "1280x720", "--full-size"});
+    const auto [left, top, right, bottom] = place("stack/exposure");
+    const Picture before = shot();
+    const std::string of = "mousemove --window " + window();
+    ASSERT_EQ(shell(fmt::format("xdotool {} 640 300 sleep 1 {} {} {} mousedown 2 sleep 1 mouseup 2", of, of,
+                                (left + right) / 2, (top + bottom) / 2)),
+              0);
+    EXPECT_EQ(difference(before, shot()), 0);
+    leave();
+}
+
 TEST_F(CliViewer, WalkingChangesTheView) {
     start({"play", scenes_folder + "dungeon.scene.toml", "--size", "320x180"});
     const Picture before = shot();
@@ -332,8 +452,10 @@ TEST_F(CliViewer, RefusesWhatItCannotShow) {
     expect_refused({"play", scenes_folder + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
     const std::string scene = scenes_folder + "dungeon.scene.toml";
     // Warnings name the flags of frames.
-    expect_refused({"play", source_folder + std::string("/samples/window.exr"), "--eye", "both"}, 1, "--eye both: allowed is one view");
-    expect_refused({"edit", source_folder + std::string("/samples/window.exr"), "--normals-space", "eye"}, 1, "allowed is world, view");
+    expect_refused({"play", source_folder + std::string("/samples/window.exr"), "--eye", "both"}, 1,
+                   "--eye both: allowed is one view");
+    expect_refused({"edit", source_folder + std::string("/samples/window.exr"), "--normals-space", "eye"}, 1,
+                   "allowed is world, view");
     expect_refused({"play", scene, "--frame-time", "0"}, 1, "--frame-time = 0: allowed is [0.1, 1000] ms");
     expect_refused({"play", scene, "--frame-time", "16", "--full-size"}, 1, "--full-size draws every pixel");
     expect_refused({"play", scene, "--frame-time", "16", "--frames", "2"}, 1, "frames that are counted");

@@ -230,14 +230,25 @@ TEST_F(FollowByName, WhatCannotBeChangesNothing) {
 
 TEST_F(FollowByName, ConsolesBringTheirValuesBack) {
     begin(three);
+    const ComposerValues before(composer_);
     must(composer_.set(*composer_.find("exposure"), "exposure", word(3)));
     must(composer_.set_enabled(*composer_.find("tonemap"), false));
-    EXPECT_FALSE(needs_compile([&](Look& look) { return take_values(look, composer_); }));
+    EXPECT_FALSE(needs_compile([&](Look& look) { return before.take_changes(look, composer_); }));
     EXPECT_EQ(document_->look().entries[2].words, word(3));
     EXPECT_FALSE(document_->look().entries[3].state.enabled);
     document_->undo();
     follows();
     EXPECT_EQ(composer_.words(*composer_.find("exposure"))[0], word(1)[0]);
+}
+
+TEST_F(FollowByName, WhatATimelineHasSetIsNoConsoles) {
+    begin(three);
+    must(composer_.set_enabled(*composer_.find("tonemap"), false));  // an event's
+    const ComposerValues before(composer_);
+    must(composer_.set(*composer_.find("exposure"), "exposure", word(3)));
+    must(document_->edit("exposure", [&](Look& look) { return before.take_changes(look, composer_); }));
+    EXPECT_EQ(document_->look().entries[2].words, word(3));
+    EXPECT_TRUE(document_->look().entries[3].state.enabled);
 }
 
 }  // namespace

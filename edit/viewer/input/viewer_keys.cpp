@@ -30,12 +30,26 @@ void Viewer::obey_keys() {
         window_->capture_cursor(true);
     for (const darkroom::window::KeyPress& press : window_->pressed()) {
         const std::optional<KeyAction> action = action_of(press, job_.is_edit);
-        // Who types into a field writes letters; keys with a number or Ctrl are ours still.
+        // Who types into a field writes letters, copies, and takes back what was typed; F keys and Ctrl+S are ours
+        // still.
         const bool is_typed = (gui_->wants_keys() || screen_.has_console()) && action != KeyAction::Console &&
-                              action != KeyAction::Leave && function_key(press.key) == 0 &&
-                              (press.modifiers & GLFW_MOD_CONTROL) == 0;
+                              action != KeyAction::Leave && action != KeyAction::Save && function_key(press.key) == 0;
         if (action && !is_typed) obey(*action, function_key(press.key));
     }
+}
+
+bool Viewer::is_mouse_of_camera() {
+    const auto is_down = [this](int button) { return window_->is_button_down(button); };
+    const bool was_down = std::exchange(is_button_down_, is_down(GLFW_MOUSE_BUTTON_LEFT) ||
+                                                             is_down(GLFW_MOUSE_BUTTON_MIDDLE) ||
+                                                             is_down(GLFW_MOUSE_BUTTON_RIGHT));
+    if (was_down && is_button_down_) return has_mouse_;
+    const VkRect2D area = screen_.picture_area(window_->extent(), window_->scale(), source_->frames() > 0);
+    const auto [x, y] = window_->mouse();
+    const double right = x - area.offset.x, down = y - area.offset.y;
+    const bool is_inside = right >= 0 && down >= 0 && right < area.extent.width && down < area.extent.height;
+    has_mouse_ = is_inside && !gui_->has_popup() && !gui_->wants_mouse() && !screen_.picture().is_busy();
+    return has_mouse_;
 }
 
 void Viewer::obey(KeyAction action, std::uint32_t number) {
@@ -262,10 +276,10 @@ void Viewer::run_command(const std::string& command) {
         for (std::string& line : lines) print(std::move(line));
         return;
     }
-    console->execute(command);
     const darkroom::Composer& composer = console->composer();
-    settle("console",
-           document_->edit(command, [&](Look& look) { return darkroom::edit::take_values(look, composer); }));
+    const darkroom::edit::ComposerValues before(composer);
+    console->execute(command);
+    settle("console", document_->edit(command, [&](Look& look) { return before.take_changes(look, composer); }));
 }
 
 }  // namespace app

@@ -55,14 +55,11 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
 
 Result<> LiveInterface::advance(double time, const HeadMotion& motion, bool is_menu_open) {
     if (composer_ == nullptr || (!is_given() && !controllers_)) return {};
-    game_ = ui_.game;
-    for (const GameEvent& event : events_)
-        if (event.time <= time)
-            for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
-    // Its degrees grow to the right, a camera's to the left.
-    const darkroom::Vec2 offset =
-        inertia_.step(motion.delta_time, -motion.yaw, motion.is_on_ground, motion.velocity_up);
-    DARKROOM_TRY(move_interface(*composer_, offset));
+    game_ = game_at(ui_.game, events_, time);
+    // Its degrees grow to the right, a camera's to the left. A hand moves the view on top of what events do with it.
+    const darkroom::Vec2 hand = inertia_.step(motion.delta_time, -motion.yaw, motion.is_on_ground, motion.velocity_up);
+    const darkroom::Vec2 told = inertia_at(events_, time);
+    DARKROOM_TRY(move_interface(*composer_, {hand.x + told.x, hand.y + told.y}));
     if (controllers_) controllers_->frame({.time = time, .is_hud_visible = !is_menu_open, .game = &game_});
     if (document_ != nullptr) {
         for (const auto& [name, value] : game_) document_->set(name, hud_value(value));

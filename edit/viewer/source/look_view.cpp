@@ -43,9 +43,11 @@ LookView::LookView(darkroom::Device& device, Desc desc)
 }
 
 Result<> LookView::show(const darkroom::Look& look) {
-    DARKROOM_TRY_VALUE(const darkroom::Followed followed,
-                       darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.keeps}));
+    DARKROOM_TRY_VALUE(
+        const darkroom::Followed followed,
+        darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.timeline.entries()}));
     shown_ = look;
+    desc_.timeline.follow(look);
     is_of_look_ = false;
     return followed.needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
 }
@@ -127,6 +129,7 @@ Result<> LookView::record(VkCommandBuffer commands, darkroom::Frame frame) {
         watched.target.extent = {watched_.info.extent.width, watched_.info.extent.height};
         frame.watched = {&watched, 1};
     }
+    DARKROOM_TRY(desc_.timeline.advance(composer_, frame.time));
     Result<> done = composer_.record(commands, frame);
     is_drawn_ = is_drawn_ || done;
     is_of_look_ = done.has_value();

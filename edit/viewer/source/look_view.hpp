@@ -9,6 +9,7 @@
 
 #include "gpu/resource/resources.hpp"
 #include "live_source.hpp"
+#include "programs/darkroom/run/timeline.hpp"
 #include "window/pane.hpp"
 
 namespace app {
@@ -19,9 +20,9 @@ class LookView {
         std::uint32_t frames_in_flight = 2;
         darkroom::KernelStage kernels = darkroom::KernelStage::Auto;
         bool fuse = true;
-        bool makes_light = false;        ///< in place of code values of sRGB, for a window of high range
-        bool enlarges = false;           ///< frames may be smaller than the pictures of them
-        std::vector<std::string> keeps;  ///< as in darkroom::ApplyOptions
+        bool makes_light = false;  ///< in place of code values of sRGB, for a window of high range
+        bool enlarges = false;     ///< frames may be smaller than the pictures of them
+        Timeline timeline;         ///< what happens to the look
     };
     LookView(darkroom::Device& device, Desc desc);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
@@ -270,50 +271,75 @@ double Timeline::Way::at(double time) const {
 
 void Timeline::restart(Composer& composer) {
     next_ = 0;
+    now_ = states_;
     composer.drop_overrides(owner);
     for (Way& way : ways_)
         way = {.layer = way.layer, .first = way.first, .from = double{way.first}, .to = double{way.first}};
 }
 
+void Timeline::follow(const Look& look) {
+    const std::vector<std::string> names = darkroom::entry_names(look);
+    for (Value& value : states_) {
+        const auto found = std::ranges::find(names, value.entry);
+        if (found == names.end()) continue;
+        const darkroom::StateWords state =
+            darkroom::state_words(look.entries[static_cast<std::size_t>(found - names.begin())].state);
+        const ParamInfo& row = *darkroom::entry_rows.find(value.parameter);
+        value.words.assign(state.begin() + row.word, state.begin() + row.word + row.words);
+    }
+    now_ = states_;
+    for (const Event& event : std::span(events_).first(next_)) take(event);
+    is_other_look_ = true;
+}
+
+void Timeline::take(const Event& event) {
+    for (const Value& value : event.values) {
+        const auto same = [&](const Value& other) {
+            return other.entry == value.entry && other.parameter == value.parameter && other.is_state == value.is_state;
+        };
+        const auto found = std::ranges::find_if(now_, same);
+        found == now_.end() ? now_.push_back(value) : void(found->words = value.words);
+    }
+}
+
 Result<> Timeline::advance(Composer& composer, double time) {
     // A moment is that of its frame where they are the same but for rounding.
     constexpr double rounding = 1e-9;
-    if (next_ == 0 || time < last_time_) {
-        restart(composer);
-        DARKROOM_TRY(apply(composer, {.values = states_, .fired = {}, .weights = {}}));
-    }
+    if (next_ == 0 || time < last_time_) restart(composer);
     last_time_ = time;
-    for (; next_ < events_.size() && events_[next_].time <= time + rounding; ++next_)
-        DARKROOM_TRY(apply(composer, events_[next_]));
-    for (const Way& way : ways_) DARKROOM_TRY(composer.set_layer_weight(way.layer, static_cast<float>(way.at(time))));
+    for (; next_ < events_.size() && events_[next_].time <= time + rounding; ++next_) {
+        const Event& event = events_[next_];
+        take(event);
+        for (const Value& value : event.values) DARKROOM_TRY(apply(composer, value));
+        for (const std::string& name : event.fired) composer.fire(name, event.time);
+        for (const Weight& weight : event.weights) {
+            Way& way = *std::ranges::find(ways_, weight.layer, &Way::layer);
+            way = {.layer = way.layer,
+                   .first = way.first,
+                   .start = event.time,
+                   .over = event.over,
+                   .from = way.at(event.time),
+                   .to = double{weight.weight}};
+        }
+    }
+    // A Composer holds no overrides of `enabled` and `opacity`; and entries of another look may have come anew.
+    for (const Value& value : now_)
+        if (value.is_state || is_other_look_) DARKROOM_TRY(apply(composer, value));
+    is_other_look_ = false;
+    const std::vector<std::string> layers = ways_.empty() ? std::vector<std::string>() : composer.layer_names();
+    for (const Way& way : ways_)
+        if (std::ranges::count(layers, way.layer) != 0)
+            DARKROOM_TRY(composer.set_layer_weight(way.layer, static_cast<float>(way.at(time))));
     return {};
 }
 
-Result<> Timeline::apply(Composer& composer, const Event& event) {
-    for (const Value& value : event.values) {
-        // What a look that is switched off leaves out is not there.
-        const auto entry = composer.find(value.entry);
-        if (!entry) continue;
-        Result<> done;
-        if (!value.is_state)
-            done = composer.set_override(*entry, value.parameter, owner, value.words);
-        else if (value.parameter == "enabled")
-            done = composer.set_enabled(*entry, value.words[0] != 0);
-        else
-            done = composer.set_opacity(*entry, std::bit_cast<float>(value.words[0]));
-        if (!done) return done;
-    }
-    for (const std::string& name : event.fired) composer.fire(name, event.time);
-    for (const Weight& weight : event.weights) {
-        Way& way = *std::ranges::find(ways_, weight.layer, &Way::layer);
-        way = {.layer = way.layer,
-               .first = way.first,
-               .start = event.time,
-               .over = event.over,
-               .from = way.at(event.time),
-               .to = double{weight.weight}};
-    }
-    return {};
+Result<> Timeline::apply(Composer& composer, const Value& value) {
+    const auto entry = composer.find(value.entry);
+    if (!entry) return {};
+    if (value.is_state && value.parameter == "enabled") return composer.set_enabled(*entry, value.words[0] != 0);
+    if (value.is_state) return composer.set_opacity(*entry, std::bit_cast<float>(value.words[0]));
+    if (composer.info(*entry)->parameters.find(value.parameter) == nullptr) return {};
+    return composer.set_override(*entry, value.parameter, owner, value.words);
 }
 
 }  // namespace app

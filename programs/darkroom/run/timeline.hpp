@@ -32,8 +32,10 @@ class Timeline {
     [[nodiscard]] std::vector<double> times() const;
     /// What is said of the game, in order.
     [[nodiscard]] std::vector<GameEvent> game() const;
-    /// Brings a Composer that holds the look to what is the case at `time`: the same whatever was advanced to before.
-    /// Values are overrides named "timeline".
+    /// The look is another now: what events have not set is as this one has it.
+    void follow(const darkroom::Look& look);
+    /// Brings a Composer that holds the look to what is the case at `time`: the same whatever was advanced to, or set
+    /// in the Composer, before. Values are overrides named "timeline". What the Composer lacks is passed over.
     [[nodiscard]] darkroom::Result<> advance(darkroom::Composer& composer, double time);
 
   private:
@@ -66,12 +68,15 @@ class Timeline {
     };
 
     void restart(darkroom::Composer& composer);
-    [[nodiscard]] darkroom::Result<> apply(darkroom::Composer& composer, const Event& event);
+    void take(const Event& event);
+    [[nodiscard]] static darkroom::Result<> apply(darkroom::Composer& composer, const Value& value);
 
     std::vector<Event> events_;  ///< by time
     std::vector<std::string> entries_;
     std::vector<Way> ways_;
     std::vector<Value> states_;  ///< of entries whose `enabled` or `opacity` is set, as the look has them
+    std::vector<Value> now_;     ///< those, and what events have set so far
+    bool is_other_look_ = false;
     std::size_t next_ = 0;
     double last_time_ = 0;
 };

@@ -90,9 +90,16 @@ Result<> UiSource::start(Composer& composer) {
     return {};
 }
 
+darkroom::GameTable game_at(darkroom::GameTable game, const std::vector<GameEvent>& events, double time) {
+    for (const GameEvent& event : events)
+        if (event.time <= time)
+            for (const auto& [name, value] : event.values) game.insert_or_assign(name, value);
+    return game;
+}
+
 // The springs come to rest within seconds, so only what happened lately counts; the steps are exact, so their number
 // does not.
-darkroom::Vec2 UiSource::offset_at(double time) const {
+darkroom::Vec2 inertia_at(const std::vector<GameEvent>& events, double time) {
     constexpr double memory = 4, longest = darkroom::HudInertia::longest_step;
     darkroom::HudInertia inertia;
     double now = time - memory, yaw = 0;
@@ -105,7 +112,7 @@ darkroom::Vec2 UiSource::offset_at(double time) const {
             now += step;
         }
     };
-    for (const GameEvent& event : events_) {
+    for (const GameEvent& event : events) {
         if (event.time >= time) break;
         move(event.time);
         if (event.is_teleport) {
@@ -123,11 +130,8 @@ Result<> UiSource::advance(Composer& composer, double time) {
     if (ui_.document.empty() && ui_.controllers.empty()) return {};
     if (composer_ != &composer || time < last_time_) DARKROOM_TRY(start(composer));
     last_time_ = time;
-    game_ = ui_.game;
-    for (const GameEvent& event : events_)
-        if (event.time <= time)
-            for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
-    if (!events_.empty()) DARKROOM_TRY(move_interface(composer, offset_at(time)));
+    game_ = game_at(ui_.game, events_, time);
+    if (!events_.empty()) DARKROOM_TRY(move_interface(composer, inertia_at(events_, time)));
     if (controllers_) controllers_->frame({.time = time, .game = &game_});
     return {};
 }

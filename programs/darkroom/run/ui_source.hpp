@@ -33,6 +33,11 @@ namespace app {
 /// place.
 [[nodiscard]] darkroom::Result<> move_interface(darkroom::Composer& composer, darkroom::Vec2 offset);
 
+/// What the game says at this time, on top of what it said at first.
+[[nodiscard]] darkroom::GameTable game_at(darkroom::GameTable game, const std::vector<GameEvent>& events, double time);
+/// How far the interface lags behind where the view looks at this time by events.
+[[nodiscard]] darkroom::Vec2 inertia_at(const std::vector<GameEvent>& events, double time);
+
 class UiSource {
   public:
     UiSource() = default;
@@ -53,7 +58,6 @@ class UiSource {
     [[nodiscard]] darkroom::Result<std::shared_ptr<const std::vector<std::uint8_t>>> picture(VkExtent2D extent);
 
   private:
-    [[nodiscard]] darkroom::Vec2 offset_at(double time) const;
     /// Once, where the interface is a document.
     [[nodiscard]] darkroom::Result<> load_document();
 
