@@ -53,14 +53,15 @@ void Viewer::tell_warnings() {
     screen_.say("look's file", all);
 }
 
-// Of a source that was read again they are others.
 void Viewer::tell_source_warnings() {
-    const std::vector<std::string> more = source_->take_warnings();
-    if (more.empty()) return;
+    std::vector<std::string> now = source_->warnings();
+    if (now == source_warnings_) return;
     // A scene passes over what it does not know; a frame that is not shown is missing.
     const darkroom::Severity severity = scene_ != nullptr ? darkroom::Severity::Warning : darkroom::Severity::Error;
-    for (const std::string& warning : more) source_warnings_.push_back({severity, warning});
-    screen_.say("source", source_warnings_);
+    std::vector<darkroom::panels::Messages::Said> all;
+    for (const std::string& warning : now) all.push_back({severity, warning});
+    screen_.say("source", all);
+    source_warnings_ = std::move(now);
 }
 
 // The same command gives the same picture, whatever somebody has set; and what is edited is the look's own.

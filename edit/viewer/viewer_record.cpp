@@ -98,8 +98,12 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     DARKROOM_TRY(of.resize(extent));
     if (is_fixed()) of.composer().wait_for_kernels();
     has_developed_ = true;
-    // A plan that does not fit yet is on its way: the picture stays what it was.
+    // A plan that does not fit yet is on its way, that of a frame which brings other images from here on: the picture
+    // stays what it was.
     const Result<> recorded = of.record(commands, frame);
+    if (!recorded && !of.is_coming())
+        settle(fmt::format("fit {}", static_cast<int>(side)),
+               of.fit(*source_, full_extent_, interface_->format(), !wanted_.pictures.empty()));
     if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);
     return {};
 }

@@ -80,6 +80,7 @@ void Viewer::watch_source(darkroom::edit::Watch::Clock::time_point read) {
 // The new one is made beside the frames, which go on with the old one.
 void Viewer::reload_source() {
     take_other_picture();
+    source_->look_again();
     if (opening_.valid()) return take_opened();
     if (!coming_.valid()) {
         if (!opens_next_.empty()) return open_subject(std::exchange(opens_next_, {}));

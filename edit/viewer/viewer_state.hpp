@@ -252,7 +252,7 @@ class Viewer {
     std::filesystem::path opens_next_;             ///< asked for meanwhile
     std::filesystem::path saved_as_;  ///< the document's file, when it was last looked at
     std::string titled_;              ///< what the window is called by
-    std::vector<darkroom::panels::Messages::Said> source_warnings_;
+    std::vector<std::string> source_warnings_;
     std::pair<std::string, std::vector<std::string>> interface_files_;  ///< document and controllers, as it started
     LineInput input_;
     std::optional<std::string> places_;                  ///< widgets that were asked for, by how their names begin

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "console_state.hpp"
 #include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
@@ -234,6 +233,15 @@ std::optional<Variable> find_variable(const Composer& composer, std::string_view
     for (std::size_t i = 0; i < composer.size(); ++i)
         for (const ParamInfo& row : composer.info(composer.entry(i))->parameters.rows)
             if (!row.also.empty() && row.also == name) return Variable{composer.entry(i), &row};
+    // As looks and flags have it: bloom_intensity, --bloom-intensity.
+    std::string key(name.starts_with("--") ? name.substr(2) : name);
+    std::ranges::replace(key, '-', '_');
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const EffectInfo& effect = *composer.info(composer.entry(i));
+        if (!key.starts_with(effect.name)) continue;
+        for (const ParamInfo& row : effect.parameters.rows)
+            if (flat_key(effect.name, row.name) == key) return Variable{composer.entry(i), &row};
+    }
     return std::nullopt;
 }
 

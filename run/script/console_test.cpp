@@ -311,6 +311,18 @@ TEST(ConsoleNames, OfTheReferenceAreParametersOfTheInterfacesEffects) {
     EXPECT_TRUE(printed.empty()) << printed.front();
 }
 
+TEST(ConsoleNames, ThoseOfLooksAndFlagsAreKnown) {
+    if (find_effect("vignette") == nullptr) GTEST_SKIP();
+    Composer composer(Device::assumed());
+    composer.add(*find_effect("vignette"), nullptr);
+    Console console(composer);
+    EXPECT_EQ(console.execute("vignette_intensity 0.5"), 0U);
+    EXPECT_EQ(console.get("vignette.intensity"), "0.5");
+    EXPECT_EQ(console.execute("--vignette-intensity 0.25"), 0U);
+    EXPECT_EQ(console.get("vignette.intensity"), "0.25");
+    EXPECT_EQ(console.execute("vignette_intensify 0.5"), 1U);
+}
+
 // A variable is one value, and a size in % is two.
 TEST(ConsoleNames, SizesArePixels) {
     if (find_effect("gaussian_blur") == nullptr) GTEST_SKIP();

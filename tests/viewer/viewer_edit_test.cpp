@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "image/frame/frame_file.hpp"
 #include "tests/places.hpp"
 #include "viewer_support.hpp"
 
@@ -249,6 +250,27 @@ TEST_F(CliViewerEdit, BrokenFramesOfASequenceAreToldOnce) {
     std::this_thread::sleep_for(std::chrono::seconds(4));
     const std::string lines = complained();
     EXPECT_LE(std::ranges::count(lines, '\n'), 2) << lines;
+    // They are shown once they are whole.
+    for (const char* const name : {"s.0002.exr", "s.0003.exr"})
+        std::filesystem::copy_file(path("s.0001.exr"), path(name), std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(wait_until(
+        [&] {
+            command("messages");
+            return count("messages: 0") > 0;
+        },
+        30))
+        << said();
+}
+
+TEST_F(CliViewerEdit, AFrameThatIsRenderedAnewIsReadAgain) {
+    start({"edit", frame("frame.exr"), "--size", "1280x720"});
+    const Picture before = shot();
+    FrameFile bright;
+    bright.color = Picture(before.width, before.height);
+    for (float& value : bright.color.pixels) value = 0.5F;
+    ASSERT_TRUE(write_frame(path("frame.exr"), bright));
+    EXPECT_TRUE(wait_until([&] { return difference(before, shot()) > 0.1; }, 20));
+    leave();
 }
 
 TEST_F(CliViewerEdit, TwoPicturesAtOnceHaveTwoNames) {

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "image/frame/frame_file.hpp"
 #include "tests/places.hpp"
 #include "viewer_support.hpp"
 

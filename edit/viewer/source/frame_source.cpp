@@ -45,9 +45,10 @@ void FrameSource::start() {
 
 // Whatever a file makes a decoder do, the thread that reads goes on.
 Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const try {
-    DARKROOM_TRY_VALUE(darkroom::FrameFile file, read_frame(files_[number], desc_.options));
     auto out = std::make_shared<Decoded>();
     out->number = number;
+    out->stamp = darkroom::stamp_of(files_[number].path);
+    DARKROOM_TRY_VALUE(darkroom::FrameFile file, read_frame(files_[number], desc_.options));
     out->file = std::move(file);
     out->lights = take_lights(out->file);
     out->input = develop_input(out->file, out->lights);
@@ -89,42 +90,61 @@ void FrameSource::work() {
             continue;
         }
         lock.unlock();
+        const darkroom::FileStamp stamp = darkroom::stamp_of(files_[number].path);
         Result<std::shared_ptr<Decoded>> made = decode(number);
         lock.lock();
-        keep(number, std::move(made));
+        keep(number, stamp, std::move(made));
         changed_.notify_all();
     }
 }
 
-void FrameSource::keep(std::size_t number, Result<std::shared_ptr<Decoded>> made) {
+void FrameSource::keep(std::size_t number, const darkroom::FileStamp& stamp, Result<std::shared_ptr<Decoded>> made) {
     if (made) {
         kept_.push_front(std::move(*made));
         if (kept_.size() > max_kept) kept_.pop_back();
     } else {
-        failed_.insert(number);
-        warnings_.push_back(made.error().text);
+        failed_[number] = {stamp, made.error().text};
     }
 }
 
 void FrameSource::read_here(std::size_t number) {
-    if (find(number) == nullptr && !failed_.contains(number)) keep(number, decode(number));
+    const darkroom::FileStamp stamp = darkroom::stamp_of(files_[number].path);
+    if (find(number) == nullptr && !failed_.contains(number)) keep(number, stamp, decode(number));
+}
+
+// One that is gone stays on the screen: who writes a file may replace it.
+void FrameSource::look_again() {
+    const std::lock_guard lock(mutex_);
+    const auto is_another = [&](std::size_t number, const darkroom::FileStamp& was) {
+        const darkroom::FileStamp now = darkroom::stamp_of(files_[number].path);
+        return now != was && now != darkroom::FileStamp{};
+    };
+    const std::size_t forgotten =
+        std::erase_if(failed_, [&](const auto& failed) { return is_another(failed.first, failed.second.stamp); }) +
+        std::erase_if(kept_, [&](const auto& kept) { return is_another(kept->number, kept->stamp); });
+    if (forgotten == 0) return;
+    if (!thread_ && files_.size() == 1) start();
+    changed_.notify_all();
 }
 
 std::optional<VkExtent2D> FrameSource::extent() const { return shown_->input.extent; }
 
-std::vector<std::string> FrameSource::take_warnings() {
+std::vector<std::string> FrameSource::warnings() const {
     const std::lock_guard lock(mutex_);
-    return std::exchange(warnings_, {});
+    std::vector<std::string> out = warnings_;
+    for (const auto& [number, failed] : failed_) out.push_back(failed.why);
+    return out;
 }
 
 bool FrameSource::is_up_to_date() const {
     const std::lock_guard lock(mutex_);
-    return shown_->number == wanted_ || failed_.contains(wanted_);
+    return find(wanted_) == shown_ || failed_.contains(wanted_);
 }
 
 bool FrameSource::is_another(const LiveMoment& moment) const {
     const std::lock_guard lock(mutex_);
-    return moment.number != shown_->number && find(moment.number) != nullptr;
+    const std::shared_ptr<Decoded> found = find(moment.number);
+    return found != nullptr && found != shown_;
 }
 
 // One that is on its way may be there when this has returned.
@@ -132,7 +152,7 @@ bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
     if (is_new_ || moment.scale != scale_) return true;
     const std::lock_guard lock(mutex_);
     const std::size_t number = std::min(moment.number, files_.size() - 1);
-    return number != shown_->number && !failed_.contains(number);
+    return find(number) != shown_ && !failed_.contains(number);
 }
 
 Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {

@@ -5,10 +5,11 @@
 
 #include <condition_variable>
 #include <list>
+#include <map>
 #include <mutex>
-#include <set>
 #include <thread>
 
+#include "core/files.hpp"
 #include "develop/upload.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/sequence.hpp"
@@ -40,7 +41,8 @@ class FrameSource final : public LiveSource {
     [[nodiscard]] std::size_t frames() const override { return files_.size() > 1 ? files_.size() : 0; }
     [[nodiscard]] std::string shown_frame(std::size_t number) const override;
     [[nodiscard]] std::vector<std::filesystem::path> files() const override;
-    [[nodiscard]] std::vector<std::string> take_warnings() override;
+    void look_again() override;
+    [[nodiscard]] std::vector<std::string> warnings() const override;
     /// Is the frame that was asked for last the one that is shown? For who waits for it.
     [[nodiscard]] bool is_up_to_date() const;
     [[nodiscard]] bool is_coming() const override { return !is_up_to_date(); }
@@ -49,6 +51,7 @@ class FrameSource final : public LiveSource {
     /// A frame in main memory.
     struct Decoded {
         std::size_t number = 0;
+        darkroom::FileStamp stamp;  ///< of the file, before it was read
         darkroom::FrameFile file;
         std::vector<darkroom::ReferenceLight> lights;
         darkroom::DevelopInput input;  ///< refers to both
@@ -59,7 +62,7 @@ class FrameSource final : public LiveSource {
     void start();
     void read_here(std::size_t number);
     /// With the lock.
-    void keep(std::size_t number, darkroom::Result<std::shared_ptr<Decoded>> made);
+    void keep(std::size_t number, const darkroom::FileStamp& stamp, darkroom::Result<std::shared_ptr<Decoded>> made);
     [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
     [[nodiscard]] const darkroom::DevelopInput& input() const { return small_ ? small_->input() : shown_->input; }
 
@@ -73,8 +76,12 @@ class FrameSource final : public LiveSource {
     std::condition_variable changed_;
     std::list<std::shared_ptr<Decoded>> kept_;
     std::size_t wanted_ = 0;
-    std::set<std::size_t> failed_;  ///< not tried again
-    std::vector<std::string> warnings_;
+    struct Failed {
+        darkroom::FileStamp stamp;
+        std::string why;
+    };
+    std::map<std::size_t, Failed> failed_;  ///< not tried again until their files are others
+    std::vector<std::string> warnings_;     ///< of the rest
     bool is_ending_ = false;
 
     std::shared_ptr<Decoded> shown_;

@@ -61,8 +61,10 @@ class LiveSource {
     /// Is the frame that was asked for still being read?
     [[nodiscard]] virtual bool is_coming() const { return false; }
     [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
-    /// What went wrong with frames since the last call; empty: nothing.
-    [[nodiscard]] virtual std::vector<std::string> take_warnings() { return {}; }
+    /// Looks for files that are others than they were when they were read, and reads them again beside the frames.
+    virtual void look_again() {}
+    /// What is wrong with its frames now.
+    [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 /// The frame with each image left in the layout that it is in, so that it can be recorded with again.

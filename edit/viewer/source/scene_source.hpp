@@ -34,7 +34,7 @@ class SceneSource final : public LiveSource {
     [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
     [[nodiscard]] std::optional<darkroom::ImageRef> display_picture() const override;
     [[nodiscard]] std::vector<std::filesystem::path> files() const override;
-    [[nodiscard]] std::vector<std::string> take_warnings() override { return std::exchange(warnings_, {}); }
+    [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
 
     [[nodiscard]] const darkroom::scene::Scene& scene() const { return scene_; }
     [[nodiscard]] const darkroom::scene::Assets& assets() const { return assets_; }
