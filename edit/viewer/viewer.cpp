@@ -26,8 +26,6 @@ namespace {
 
 /// A longer frame was none: the machine slept, or a driver compiled.
 constexpr double longest_frame = 0.25;
-/// Of a scene to those of its picture. A third is what upscalers are made for, and a step between gains a third.
-constexpr std::array steps_of_lines{1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 1.0 / 3};
 
 bool is_device_lost(const darkroom::Error& error) {
     return error.text.ends_with(darkroom::gpu::result_name(VK_ERROR_DEVICE_LOST));
@@ -66,8 +64,7 @@ Result<> Viewer::open() {
     is_post_on_ = !job_.is_off;
     is_paused_ = job_.is_paused;
     draw_ = job_.scene_desc.render.draw;
-    if (job_.frame_time)
-        pace_ = ScaleChoice(std::vector(steps_of_lines.begin(), steps_of_lines.end()), *job_.frame_time);
+    if (job_.frame_time) scale_ = DrawScale(job_.frame_time);
     time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
     previous_time_ = std::max(0.0, time_ - job_.step);
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
@@ -173,12 +170,12 @@ LiveMoment Viewer::moment() const {
         .draw = draw_,
         .jitter = jitter(),
         .aspect = static_cast<float>(full_extent_.width) / static_cast<float>(std::max(full_extent_.height, 1U)),
-        .scale = scale_};
+        .scale = scale_.scale()};
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
     out.draw.exposure = darkroom::exposure_of(document_->look());
-    out.draw.mip_bias = darkroom::Composer::mip_bias(static_cast<float>(1 / scale_));
+    out.draw.mip_bias = darkroom::Composer::mip_bias(static_cast<float>(1 / scale_.scale()));
     out.number = playback_.number();
     return out;
 }
@@ -205,8 +202,9 @@ Result<> Viewer::show(const PresentFrame& frame) {
     // The first frame, too, has what the game says and controllers set.
     const bool is_menu_open = screen_.has_console() || gui_->has_popup();
     settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
-    DARKROOM_TRY(begin_timing(frame));
-    choose_scale();
+    const DrawScale::Turn turn = draw_turn();
+    DARKROOM_TRY(scale_.begin_timing(*device_, frame, turn, has_developed_));
+    scale_.choose(turn);
     has_rested_ = has_developed_ = false;
     DARKROOM_TRY(prepare(frame, wanted));
     for (std::size_t side = 0; side < side_count; ++side)
@@ -218,8 +216,8 @@ Result<> Viewer::show(const PresentFrame& frame) {
     if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
     draw_screen(frame);
     DARKROOM_TRY(gui_->draw(frame));
-    end_timing(frame);
-    store_window(frame);
+    scale_.end_timing(frame, has_developed_);
+    if (store_.wants_window()) tell_store(store_.record_window(*device_, *presenter_, frame));
     // Who waits for the window may press keys now.
     if (++shown_frames_ == 1) {
         tell("ready");
@@ -247,7 +245,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .transfer = left.transfer,
                   .compared_transfer = right.transfer,
                   .extent = full_extent_,
-                  .lines = scale_,
+                  .lines = scale_.scale(),
                   .window = frame.extent,
                   .scale = window_->scale(),
                   .passed = is_fixed() ? delta_time_ : passed_,
@@ -255,7 +253,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .number = number,
                   .playback = playback_,
                   .is_paused = is_paused_,
-                  .inspection = inspection_ ? &*inspection_ : nullptr,
+                  .inspection = inspection_.pixel(),
                   .camera = camera_word(),
                   .frames_a_second = frames_a_second(),
                   .console = interface_->console()});

@@ -76,16 +76,9 @@ void Viewer::let_go_of_device() {
     has_thumbnails_ = false;
     presenter_.reset();  // waits for what is under way
     gui_.reset();
-    stores_.clear();
-    inspected_.clear();
-    inspection_.reset();
-    inspector_.reset();
-    scope_read_.reset();
-    scope_frame_.reset();
-    scope_image_ = {};
-    timers_ = {};
-    timed_ = {};
-    has_scopes_ = false;
+    store_.forget();
+    inspection_ = {};
+    scale_.forget_device();
     other_picture_.reset();
     interface_.reset();
     for (auto& view : views_) view.reset();

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <functional>
 #include <utility>
 
-#include "core/srgb.hpp"
 #include "core/text/param_text.hpp"
 #include "edit/edits.hpp"
-#include "gpu/device/context.hpp"
-#include "image/picture/write.hpp"
 #include "programs/darkroom/run/frames.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "viewer_state.hpp"
@@ -167,114 +159,36 @@ void Viewer::follow_document() {
     interface_->set_game(ui.game);
 }
 
-std::filesystem::path Viewer::free_name(const std::string& stem, const std::string& extension) {
-    for (int number = 1; number < 10000; ++number) {
-        std::filesystem::path path = fmt::format("{}-{:04}{}", stem, number, extension);
-        // The name is taken at once, so that no other picture gets it while this one is on its way.
-        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file < 0 && errno == EEXIST) continue;
-        if (file >= 0) ::close(file);
-        return path;
-    }
-    return stem + extension;
-}
-
-// Copies are recorded behind what made the picture, and written to files once the frame has finished.
+// Copies are recorded behind what made the picture.
 void Viewer::store_picture(const PresentFrame& frame) {
-    if (is_fixed() && shown_frames_ + 1 == *job_.frames_to_show) {
-        if (!job_.screenshot.empty()) wanted_.pictures = {job_.screenshot};
-        wanted_.window = job_.window_screenshot;
-    }
-    darkroom::gpu::Context& context = device_->context();
+    if (is_fixed() && shown_frames_ + 1 == *job_.frames_to_show) store_.want(job_.screenshot, job_.window_screenshot);
     const LookView& view = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
     // Where there is none yet, the next frame is stored; and a picture that is kept is the finished one: a plan for a
     // larger one, or for the look before the last edit, has other bits.
     const bool is_coming = !is_fixed() && !source_->display_picture() && view.is_coming();
-    while (!wanted_.pictures.empty() && view.picture().is_given() && !is_coming) {
-        std::filesystem::path path = std::move(wanted_.pictures.back());
-        wanted_.pictures.pop_back();
-        Result<darkroom::Readback> read = darkroom::Readback::create(context, view.picture());
-        if (!read) return screen_.tell_error("store", read.error().text);
-        read->record(frame.commands);
-        stores_.push_back({.frame = frame.number,
-                           .path = std::move(path),
-                           .picture = std::move(*read),
-                           .transfer = view.transfer(),
-                           .has_floats = is_high_range()});
+    if (store_.wants_picture() && view.picture().is_given() && !is_coming)
+        tell_store(store_.record_picture(*device_, frame, view, is_high_range()));
+    if (!store_.wants_frame()) return;
+    const darkroom::Frame of = source_->frame();
+    darkroom::Frame stored = of;
+    stored.camera = as_stored(of.camera);
+    if (scene_ != nullptr) {
+        stored.time = time_;
+        stored.delta_time = delta_time_;
+        stored.frame_index = frame_index_;
     }
-    if (!wanted_.frame.empty()) {
-        const darkroom::Frame of = source_->frame();
-        Result<darkroom::FrameReadback> read = darkroom::FrameReadback::create(context, of);
-        if (!read) return screen_.tell_error("store", read.error().text);
-        read->record(frame.commands);
-        Store& store = stores_.emplace_back(
-            Store{.frame = frame.number, .path = std::move(wanted_.frame), .layers = std::move(*read), .of = of});
-        store.of.camera = as_stored(of.camera);
-        store.of.time = scene_ != nullptr ? time_ : of.time;
-        store.of.delta_time = scene_ != nullptr ? delta_time_ : of.delta_time;
-        store.of.frame_index = scene_ != nullptr ? frame_index_ : of.frame_index;
-    }
-    wanted_.frame.clear();
+    tell_store(store_.record_frame(*device_, frame, of, stored));
 }
 
-// With all that lies over the picture, so behind that.
-void Viewer::store_window(const PresentFrame& frame) {
-    if (wanted_.window.empty()) return;
-    const std::filesystem::path path = std::exchange(wanted_.window, {});
-    if (is_high_range())
-        return screen_.tell_error(
-            "store", "a window of high range cannot be stored as a picture; --range standard makes one that can");
-    if (!presenter_->can_copy())
-        return screen_.tell_error("store", "the window's pictures cannot be read on this device");
-    const darkroom::ImageRef image{.image = frame.image,
-                                   .view = frame.view,
-                                   .format = presenter_->format(),
-                                   .extent = frame.extent,
-                                   .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    Result<darkroom::Readback> read = darkroom::Readback::create(device_->context(), image);
-    if (!read) return screen_.tell_error("store", read.error().text);
-    read->record(frame.commands);
-    stores_.push_back({.frame = frame.number, .path = path, .picture = std::move(*read)});
+void Viewer::tell_store(const Result<>& done) {
+    if (!done) screen_.tell_error("store", done.error().text);
 }
 
 void Viewer::finish_stores(bool waits) {
-    while (!stores_.empty() && presenter_->is_finished(stores_.front().frame)) {
-        Store store = std::move(stores_.front());
-        stores_.pop_front();
-        // Read here: the images may go. Written beside the frames.
-        std::function<Result<>()> write;
-        if (store.picture && store.has_floats) {
-            write = [pixels = store.picture->floats(4), extent = store.picture->extent(), path = store.path,
-                     is_light = store.transfer == darkroom::window::PaneTransfer::SceneLinear]() mutable {
-                for (std::size_t i = 0; is_light && i < pixels.size(); ++i)
-                    if (i % 4 != 3) pixels[i] = darkroom::srgb_encode(std::clamp(pixels[i], 0.0F, 1.0F));
-                return app::write(path, {.extent = extent, .pixels = std::move(pixels)}, {});
-            };
-        } else if (store.picture) {
-            write = [bytes = store.picture->bytes(), extent = store.picture->extent(), path = store.path] {
-                return app::write(path, {.extent = extent, .bytes = bytes}, {});
-            };
-        } else {
-            write = [frame = std::make_shared<darkroom::FrameFile>(frame_file(store.of, store.layers->layers())),
-                     path = store.path] { return darkroom::write_frame(path, *frame); };
-        }
-        writing_.push_back(start_beside([write = std::move(write), path = store.path] {
-            try {
-                const Result<> done = write();
-                std::error_code error;
-                if (!done && std::filesystem::is_empty(path, error) && !error) std::filesystem::remove(path, error);
-                return std::pair(done ? "stored " + shown(path) : done.error().text, !done);
-            } catch (const std::exception& exception) {
-                return std::pair(fmt::format("{}: cannot be written: {}", shown(path), exception.what()), true);
-            }
-        }));
-    }
-    while (!writing_.empty() &&
-           (waits || writing_.front().wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
-        const auto [line, is_error] = writing_.front().get();
-        writing_.pop_front();
-        is_error ? screen_.tell_error("store", line) : tell(line);
-        if (waits && is_error) failed_ = line;
+    const auto start = [this](std::function<Store::Said()> work) { return start_beside(work); };
+    for (const Store::Said& said : store_.finish(*presenter_, start, waits)) {
+        said.is_error ? screen_.tell_error("store", said.line) : tell(said.line);
+        if (waits && said.is_error) failed_ = said.line;
     }
 }
 

@@ -44,7 +44,7 @@ bool Viewer::is_due() {
     const bool is_changed = screen_.take_change() || drawn_version_ != document_->version();
     drawn_version_ = document_->version();
     if (is_changed) frames_due_ = frames_after_change;
-    const bool is_wanted = !wanted_.pictures.empty() || !wanted_.window.empty() || !wanted_.frame.empty() || places_;
+    const bool is_wanted = store_.is_wanted() || places_;
     is_echo_ = false;
     if (is_time_running() || camera_->is_falling() || now < busy_until_ || is_wanted || frames_due_ > 0) {
         if (frames_due_ > 0) --frames_due_;
@@ -52,7 +52,7 @@ bool Viewer::is_due() {
     }
     if (has_thumbnails_ && thumbnails_ && (thumbnails_frame_ || thumbnails_->has_new())) return true;
     const bool is_old = now - last_turn_ >= between_frames;
-    if ((is_old && (is_coming() || screen_.is_over())) || has_come_to_rest()) return true;
+    if ((is_old && (is_coming() || screen_.is_over())) || scale_.has_come_to_rest()) return true;
     // What a frame measured is shown by another, which measures nothing.
     is_echo_ = std::exchange(has_measured_, false);
     return is_echo_;
@@ -69,60 +69,25 @@ double Viewer::frames_a_second() {
     return seconds > 0 ? static_cast<double>(shown_at_.size() - 1) / seconds : 0;
 }
 
-using darkroom::Result;
-
-namespace {
-
-/// A picture that has not changed for so long is drawn whole.
-constexpr std::chrono::milliseconds to_rest{300};
-
-}  // namespace
-
 // What is measured, watched or stored is the whole picture.
 bool Viewer::is_looked_into() const {
-    if (!wanted_.pictures.empty() || !wanted_.window.empty() || !wanted_.frame.empty()) return true;
+    if (store_.is_wanted()) return true;
     const EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return false;
     const auto& look = views_[static_cast<std::size_t>(Side::Look)];
     return panels->pixel() || (look && panels->watched(look->composer().current_plan()) != nullptr);
 }
 
-// What a hand moves may be drawn smaller; what time alone moves has all pixels, or what a frame time leaves of them.
-void Viewer::choose_scale() {
-    const std::chrono::duration<double> still = last_turn_ - moved_at_;
-    const bool is_over = still > to_rest + std::chrono::duration<double>(has_rested_ ? 0 : passed_);
+DrawScale::Turn Viewer::draw_turn() const {
     const bool is_running = is_time_running();
-    if (is_led_ || developed_version_ != document_->version() || (!is_running && source_->is_another(moment()))) {
-        moves_ = has_rested_ && is_over ? 1 : moves_ + 1;
-        moved_at_ = last_turn_;
-    } else if (is_over) {
-        moves_ = 0;
-    }
-    // A single step, such as a switch, is shown as it is where nothing else is drawn before the next.
-    const bool is_moving = moves_ > (is_running ? 0U : 1U) || (job_.frame_time && gathers() && is_running);
-    const bool is_reduced = is_moving && !job_.is_full_size && !is_fixed() && !is_looked_into();
-    scale_ = is_reduced ? pace_.scale() : 1;
-}
-
-Result<> Viewer::begin_timing(const darkroom::window::PresentFrame& frame) {
-    if (timers_.context == nullptr) {
-        DARKROOM_TRY_VALUE(timers_, darkroom::gpu::Timers::create(device_->context(), frames_in_flight, 2));
-    }
-    // A device without timestamps: from one frame to the next.
-    double milliseconds = passed_ * 1000;
-    const bool has_none = timers_.pools.empty();
-    const double timed = std::exchange(timed_[frame.slot], 0);
-    const bool is_known =
-        has_none ? has_developed_ && !has_rested_ : timed > 0 && timers_.read(frame.slot, 2, {&milliseconds, 1}) == 1;
-    if (is_known && (has_none ? scale_ : timed) == pace_.scale()) pace_.add(milliseconds / 1000);
-    timers_.begin(frame.commands, frame.slot);
-    timers_.mark(frame.commands, frame.slot, 0);
-    return {};
-}
-
-void Viewer::end_timing(const darkroom::window::PresentFrame& frame) {
-    timers_.mark(frame.commands, frame.slot, 1);
-    if (has_developed_) timed_[frame.slot] = scale_;
+    return {.now = last_turn_,
+            .passed = passed_,
+            .has_rested = has_rested_,
+            .is_moved =
+                is_led_ || developed_version_ != document_->version() || (!is_running && source_->is_another(moment())),
+            .is_running = is_running,
+            .gathers = gathers(),
+            .may_reduce = !job_.is_full_size && !is_fixed() && !is_looked_into()};
 }
 
 // One picture alone is none of several, and what is compared with others stands still beside them.
@@ -133,12 +98,11 @@ bool Viewer::gathers() const {
 
 darkroom::render::FrameJitter Viewer::jitter() const {
     if (!gathers()) return {};
-    darkroom::render::FrameJitter out{.now = darkroom::Composer::jitter(frame_index_, static_cast<float>(1 / scale_))};
+    darkroom::render::FrameJitter out{
+        .now = darkroom::Composer::jitter(frame_index_, static_cast<float>(1 / scale_.scale()))};
     out.before = last_jitter_.value_or(out.now);
     return out;
 }
-
-bool Viewer::has_come_to_rest() const { return scale_ < 1 && Clock::now() - moved_at_ > to_rest; }
 
 bool Viewer::is_picture_kept() const {
     return !is_fixed() && !is_time_running() && !is_looked_into() && !is_cut_ && source_->is_kept() &&

@@ -37,11 +37,11 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
     for (std::size_t side = 0; side < side_count; ++side) {
         if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
         settle(fmt::format("fit {}", side),
-               views_[side]->fit(*source_, wanted, interface_->format(), !wanted_.pictures.empty()));
+               views_[side]->fit(*source_, wanted, interface_->format(), store_.wants_picture()));
         extent = min_of(extent, views_[side]->most());
     }
     full_extent_ = extent;
-    const VkExtent2D drawn = scaled(full_extent_, scale_);
+    const VkExtent2D drawn = scaled(full_extent_, scale_.scale());
     made_extent_ = job_.frame_time ? full_extent_ : drawn;
     const LiveMoment now = moment();
     bool must_wait = source_->must_wait(now, drawn) || interface_->must_wait(full_extent_, made_extent_);
@@ -103,7 +103,7 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     const Result<> recorded = of.record(commands, frame);
     if (!recorded && !of.is_coming())
         settle(fmt::format("fit {}", static_cast<int>(side)),
-               of.fit(*source_, full_extent_, interface_->format(), !wanted_.pictures.empty()));
+               of.fit(*source_, full_extent_, interface_->format(), store_.wants_picture()));
     if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);
     return {};
 }

@@ -9,14 +9,6 @@ namespace app {
 
 using darkroom::Result;
 
-namespace {
-
-/// Of what scopes measure.
-constexpr VkExtent2D scope_extent{480, 270};
-constexpr VkFormat scope_format = VK_FORMAT_R8G8B8A8_UNORM;
-
-}  // namespace
-
 /// No frame is unfinished where the image is another.
 Result<> Viewer::watch() {
     LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
@@ -28,63 +20,21 @@ Result<> Viewer::watch() {
 Result<> Viewer::inspect(VkCommandBuffer commands, const darkroom::Frame& frame) {
     const EditPanels* const panels = screen_.panels();
     const std::optional<VkOffset2D> pixel = panels != nullptr ? panels->pixel() : std::nullopt;
-    if (!pixel) {
-        // It goes when nothing of it is under way.
-        if (inspected_.empty()) inspector_.reset();
-        inspection_.reset();
-        return {};
-    }
-    if (is_echo_) return {};
+    if (pixel && is_echo_) return {};
     LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
-    if (!inspector_) inspector_ = std::make_unique<darkroom::Inspector>(*device_);
-    darkroom::CompileDesc compiled = look.compile_desc();
-    compiled.watches.clear();
-    if (Result<> done = inspector_->update(look.composer(), compiled, frame); !done) {
-        settle("pixel", done);
-        return {};
-    }
-    const Result<std::uint64_t> recording = inspector_->record(commands, look.composer(), frame, {&*pixel, 1});
-    if (recording) inspected_.push_back({.frame = frame_number_, .recording = *recording});
+    settle("pixel", inspection_.record_pixel(*device_, commands, frame_number_, look, frame, pixel));
     return {};
 }
 
 Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     const EditPanels* const panels = screen_.panels();
     if (panels == nullptr || !panels->wants_scopes()) {
-        has_scopes_ = false;
+        inspection_.hide_scopes();
         return {};
     }
-    // Of a picture that stands they stand, too.
-    if (scope_frame_ || is_echo_ || (has_scopes_ && !has_developed_)) return {};
-    darkroom::gpu::Context& context = device_->context();
+    if (is_echo_) return {};
     const LookView& look = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
-    const darkroom::ImageRef picture = look.picture();
-    if (!picture.is_given()) return {};
-    const VkExtent2D extent{std::min(scope_extent.width, picture.extent.width),
-                            std::min(scope_extent.height, picture.extent.height)};
-    // Light is encoded by the format that it is copied into.
-    const bool is_light = look.transfer() == darkroom::window::PaneTransfer::SceneLinear;
-    const VkFormat format = is_light ? VK_FORMAT_R8G8B8A8_SRGB : scope_format;
-    if (scope_image_.info.extent.width != extent.width || scope_image_.info.extent.height != extent.height ||
-        scope_image_.info.format != format) {
-        DARKROOM_TRY_VALUE(scope_image_,
-                           darkroom::gpu::Image::create(
-                               context, {.name = "scopes",
-                                         .format = format,
-                                         .extent = {extent.width, extent.height, 1},
-                                         .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-    }
-    darkroom::ImageRef small{.image = scope_image_.handle,
-                             .view = scope_image_.view,
-                             .format = scope_format,
-                             .extent = extent,
-                             .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
-    look.copy_to(frame.commands, scope_image_);
-    DARKROOM_TRY_VALUE(scope_read_, darkroom::Readback::create(context, small));
-    scope_read_->record(frame.commands);
-    scope_frame_ = frame.number;
-    has_scopes_ = true;
-    return {};
+    return inspection_.record_scopes(*device_, frame, look, has_developed_);
 }
 
 // Begun when the menu opens, of the frame that is shown then, and left when it closes.
@@ -130,22 +80,10 @@ darkroom::panels::Thumbnail Viewer::thumbnail_of(const Thumbnails::Subject& subj
 }
 
 void Viewer::finish_seeing() {
-    while (!inspected_.empty() && presenter_->is_finished(inspected_.front().frame)) {
-        if (inspector_)
-            if (auto result = inspector_->result(inspected_.front().recording)) {
-                inspection_ = std::move(result);
-                has_measured_ = true;
-            }
-        inspected_.pop_front();
-    }
-    if (!scope_frame_ || !presenter_->is_finished(*scope_frame_)) return;
-    const std::vector<std::uint8_t> bytes = scope_read_->bytes();
-    const VkExtent2D extent = scope_read_->extent();
-    if (EditPanels* const panels = screen_.panels())
-        panels->measure({.width = extent.width, .height = extent.height, .bytes = bytes});
-    scope_read_.reset();
-    scope_frame_.reset();
-    has_measured_ = true;
+    const auto measure = [this](const darkroom::panels::ScopePicture& picture) {
+        if (EditPanels* const panels = screen_.panels()) panels->measure(picture);
+    };
+    if (inspection_.finish(*presenter_, measure)) has_measured_ = true;
 }
 
 }  // namespace app

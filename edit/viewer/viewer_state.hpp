@@ -9,14 +9,14 @@
 #include <system_error>
 #include <type_traits>
 
-#include "develop/inspect/inspector.hpp"
-#include "develop/readback.hpp"
+#include "draw_scale.hpp"
 #include "edit/document.hpp"
 #include "gui.hpp"
+#include "inspection.hpp"
 #include "journal.hpp"
 #include "playback.hpp"
-#include "scale_choice.hpp"
 #include "screen.hpp"
+#include "store.hpp"
 #include "viewer.hpp"
 #include "viewer/input/camera_rig.hpp"
 #include "viewer/input/command_line.hpp"
@@ -28,10 +28,6 @@
 #include "viewer/source/thumbnails.hpp"
 
 namespace app {
-
-inline constexpr std::uint32_t frames_in_flight = 2;
-/// Seconds. Longer, and a hand no longer feels that it moves what it sees.
-inline constexpr double longest_preview = 1.0 / 15;
 
 class Viewer {
   public:
@@ -163,18 +159,13 @@ class Viewer {
     [[nodiscard]] bool is_coming() const;
     [[nodiscard]] double frames_a_second();
 
-    /// Of the frame that comes: how many of its pixels are made.
-    void choose_scale();
-    /// Takes how long the slot's last frame took, and how long this one does from now on, up to end_timing().
-    [[nodiscard]] darkroom::Result<> begin_timing(const darkroom::window::PresentFrame& frame);
-    void end_timing(const darkroom::window::PresentFrame& frame);
+    [[nodiscard]] DrawScale::Turn draw_turn() const;
     /// Is the picture made of several frames of the scene, each drawn from another place within the pixel?
     [[nodiscard]] bool gathers() const;
     [[nodiscard]] darkroom::render::FrameJitter jitter() const;
     /// Has nothing changed that the picture is made of, the plan apart?
     [[nodiscard]] bool is_picture_kept() const;
     [[nodiscard]] bool is_looked_into() const;
-    [[nodiscard]] bool has_come_to_rest() const;
 
     // viewer_files.cpp
     void reload();
@@ -194,9 +185,8 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> read_config();
     void write_config();
     void store_picture(const darkroom::window::PresentFrame& frame);
-    void store_window(const darkroom::window::PresentFrame& frame);
+    void tell_store(const darkroom::Result<>& done);
     void finish_stores(bool waits);
-    [[nodiscard]] static std::filesystem::path free_name(const std::string& stem, const std::string& extension);
 
     ViewerJob job_;
     std::optional<darkroom::window::Window> window_;
@@ -226,17 +216,12 @@ class Viewer {
     std::uint32_t frames_due_ = 0;
     std::uint64_t drawn_version_ = 0;  ///< of the document
     bool is_resting_ = false, is_echo_ = false, has_measured_ = false;
-    ScaleChoice pace_{{1, 0.5, 0.25}, longest_preview};
-    std::uint32_t moves_ = 0;                          ///< frames that were moved by hand, one behind the other
+    DrawScale scale_;
     bool is_led_ = false;                              ///< a hand has just moved the camera
     bool is_button_down_ = false, has_mouse_ = false;  ///< in the frame before; see is_mouse_of_camera()
-    double scale_ = 1;                                 ///< of the sides of what is drawn to those of the whole picture
     VkExtent2D full_extent_{};                         ///< of the whole picture
     VkExtent2D made_extent_{};                         ///< of the picture that is made
-    darkroom::gpu::Timers timers_;                     ///< of whole frames
-    std::array<double, frames_in_flight> timed_{};     ///< scales of frames under way; 0: the frame says nothing
     std::optional<std::array<float, 2>> last_jitter_;  ///< of the scene's frame before
-    Clock::time_point moved_at_{};                     ///< a hand made the picture another
     std::uint64_t developed_version_ = 0;              ///< of the document
     bool has_rested_ = true, has_developed_ = false;   ///< before the frame that comes; since then a look was recorded
     double passed_ = 0;                                ///< seconds since the frame before
@@ -249,9 +234,9 @@ class Viewer {
     std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
     std::future<darkroom::Result<Opened>> opening_;
     darkroom::edit::Watch::Clock::time_point reading_since_;  ///< that of either
-    std::filesystem::path opens_next_;             ///< asked for meanwhile
-    std::filesystem::path saved_as_;  ///< the document's file, when it was last looked at
-    std::string titled_;              ///< what the window is called by
+    std::filesystem::path opens_next_;                        ///< asked for meanwhile
+    std::filesystem::path saved_as_;                          ///< the document's file, when it was last looked at
+    std::string titled_;                                      ///< what the window is called by
     std::vector<std::string> source_warnings_;
     std::pair<std::string, std::vector<std::string>> interface_files_;  ///< document and controllers, as it started
     LineInput input_;
@@ -261,39 +246,14 @@ class Viewer {
     std::uint64_t frame_index_ = 0;                      ///< as Frame has it: stands still with the time
     bool is_cut_ = true;
 
-    /// What is on its way to a file.
-    struct Store {
-        std::uint64_t frame = 0;
-        std::filesystem::path path;
-        std::optional<darkroom::Readback> picture;
-        std::optional<darkroom::FrameReadback> layers;
-        darkroom::Frame of{};
-        darkroom::window::PaneTransfer transfer{};  ///< of the picture
-        bool has_floats = false;                    ///< likewise
-    };
-    struct Wanted {
-        std::vector<std::filesystem::path> pictures;  ///< as often as it was asked for
-        std::filesystem::path window, frame;
-    } wanted_;  ///< of the next frame
-    std::deque<Store> stores_;
-
     std::unique_ptr<Thumbnails> thumbnails_;
     std::optional<std::uint64_t> thumbnails_frame_;  ///< whose copy is on its way to them
     bool has_thumbnails_ = false;                    ///< somebody looks at them
     std::deque<Clock::time_point> lost_at_;          ///< devices, lately
 
-    std::unique_ptr<darkroom::Inspector> inspector_;
-    struct Inspected {
-        std::uint64_t frame = 0, recording = 0;
-    };
-    std::deque<Inspected> inspected_;
-    std::optional<darkroom::Inspection> inspection_;
-    darkroom::gpu::Image scope_image_;
-    std::optional<darkroom::Readback> scope_read_;
-    bool has_scopes_ = false;                                        ///< since the panel was chosen
-    std::optional<std::uint64_t> scope_frame_;                       ///< whose copy is on its way
-    std::deque<std::future<std::pair<std::string, bool>>> writing_;  ///< what to tell, is it an error?
-    std::string failed_;                                             ///< the last store that failed
+    FrameInspection inspection_;
+    Store store_;
+    std::string failed_;  ///< the last store that failed
 };
 
 }  // namespace app

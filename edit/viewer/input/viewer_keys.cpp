@@ -40,9 +40,9 @@ void Viewer::obey_keys() {
 
 bool Viewer::is_mouse_of_camera() {
     const auto is_down = [this](int button) { return window_->is_button_down(button); };
-    const bool was_down = std::exchange(is_button_down_, is_down(GLFW_MOUSE_BUTTON_LEFT) ||
-                                                             is_down(GLFW_MOUSE_BUTTON_MIDDLE) ||
-                                                             is_down(GLFW_MOUSE_BUTTON_RIGHT));
+    const bool was_down =
+        std::exchange(is_button_down_, is_down(GLFW_MOUSE_BUTTON_LEFT) || is_down(GLFW_MOUSE_BUTTON_MIDDLE) ||
+                                           is_down(GLFW_MOUSE_BUTTON_RIGHT));
     if (was_down && is_button_down_) return has_mouse_;
     const VkRect2D area = screen_.picture_area(window_->extent(), window_->scale(), source_->frames() > 0);
     const auto [x, y] = window_->mouse();
@@ -79,14 +79,11 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
         case KeyAction::Fullscreen:
             return window_->set_fullscreen(!window_->is_fullscreen());
         case KeyAction::Screenshot:
-            wanted_.pictures.push_back(free_name("darkroom", ".png"));
-            return;
+            return store_.want_picture();
         case KeyAction::WindowScreenshot:
-            if (wanted_.window.empty()) wanted_.window = free_name("darkroom-window", ".png");
-            return;
+            return store_.want_window();
         case KeyAction::Capture:
-            if (wanted_.frame.empty()) wanted_.frame = free_name("frame", ".exr");
-            return;
+            return store_.want_frame();
         case KeyAction::Console:
             screen_.toggle_console();
             return tell(fmt::format("console: {}", on_off(screen_.has_console())));
