@@ -2,6 +2,8 @@
 // Darkroom in a host in Rust that draws with ash 0.38: three pixels of light, developed in the host's own command buffer.
 // Its crates are `darkroom` (share/darkroom/bindings/rust) and `ash` with the feature `loaded`.
 
+#![allow(unsafe_op_in_unsafe_fn)] // Of Rust 2024: what is unsafe here is unsafe as a whole.
+
 use ash::vk::{self, Handle};
 use darkroom::{sys, AdoptDesc, CompileDesc, Composer, Device, EntryDesc, Frame, Image, ImageUse};
 use std::ffi::c_void;

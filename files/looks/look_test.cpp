@@ -139,6 +139,8 @@ TEST(Look, UnknownKeysAreWarnedOfAndStrictlyRefused) {
     EXPECT_TRUE(contains(warnings[1], "unknown key 'not_a_section'")) << warnings[1];
     EXPECT_TRUE(contains(error_of(text, true), "bloom_threshold"));
     EXPECT_TRUE(contains(error_of(text, true), "not_a_section"));
+    EXPECT_EQ(error_of("bloom_threshold = 2\n", true),
+              "a.toml:1:1: unknown key 'bloom_threshold': it belongs below [post_process]");
 }
 
 TEST(Look, ValuesOutOfRangeLeaveTheDefaultAndSaySo) {

@@ -43,7 +43,9 @@ class CliNoDriver : public test::CliFixture {
 };
 
 TEST_F(CliNoDriver, ThereIsNone) {
-    const std::string none = "darkroom: no Vulkan device: the loader found no driver (VK_ERROR_INCOMPATIBLE_DRIVER)\n";
+    const std::string none =
+        "darkroom: no Vulkan device: the loader found no driver (VK_ERROR_INCOMPATIBLE_DRIVER); Mesa's software driver "
+        "is in the package mesa-vulkan-drivers\n";
     expect_refused({"devices"}, 2, none);
     expect_refused({"develop", path("frame.exr"), "-o", path("out.png")}, 2, none);
 }

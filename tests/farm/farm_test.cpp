@@ -216,8 +216,8 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     EXPECT_EQ(other.code, 1);
     EXPECT_EQ(
         other.err,
-        "darkroom: out/shot.farm: its pictures were made with other arguments (shot.####.exr -o out/); remove it, or "
-        "write elsewhere with -o\n");
+        "darkroom: out/shot.farm: its pictures were made with other arguments (shot.####.exr -o out/); remove it and "
+        "its pictures, or write elsewhere with -o\n");
     for (const int number : {1, 2, 3, 4, 5, 7, 8, 9, 10, 11}) put_picture(number);
     write("out/shot.0009.png", "");
     const Outcome second = farm(shot);

@@ -62,9 +62,11 @@ cmake --install "$build" --component tool --prefix "$work/tool" >"$work/log" || 
 [[ -x $work/tool/bin/darkroom && ! -e $work/tool/include ]] || { echo "the component tool: $(ls "$work/tool")" && exit 1; }
 
 # What was installed can be removed, and nothing else is.
+DESTDIR=$work/stage cmake --install "$build" --component tool --prefix /opt/tool >"$work/log"
 DESTDIR=$work/stage cmake --install "$build" --prefix /opt/darkroom >"$work/log"
 touch "$work/stage/opt/darkroom/share/darkroom/looks/mine.toml"
 DESTDIR=$work/stage cmake --build "$build" --target uninstall >"$work/log" || { cat "$work/log" && exit 1; }
+[[ -x $work/stage/opt/tool/bin/darkroom ]] || { echo "removing took an earlier installation along" && exit 1; }
 left=$(cd "$work/stage/opt/darkroom" && find . -type f -o -path '*[dD]arkroom*' -type d -empty)
 [[ $left == ./share/darkroom/looks/mine.toml ]] || { echo "removing left: $left" && exit 1; }
 

@@ -177,6 +177,11 @@ too_old() {
     [[ $status == 2 && ! -s $STUB_LOG && $(<"$work/said") == "darkroom: too old here: $2" ]] ||
         fail "too old: $1: $(<"$work/said")"
 }
+# The packages alone.
+: >"$STUB_LOG"
+STUB_LACKS=libfmt-dev "$tree/darkroom" --yes --packages >"$work/out" 2>"$work/said" || fail "--packages: $(<"$work/said")"
+grep -qE '^apt-get .*install -y --no-install-recommends libfmt-dev$' "$STUB_LOG" && ! grep -q -- --build "$STUB_LOG" ||
+    fail "--packages installs and builds nothing"
 too_old 'cmake 3.18.4-2' 'cmake 3.18.4-2 (3.25 is needed)'
 too_old 'g++ 4:11.2.0-1' 'g++ 4:11.2.0-1 (4:12 is needed)'
 too_old 'libfmt-dev 8.1.1+ds1-2' 'libfmt-dev 8.1.1+ds1-2 (9 is needed)' libfmt-dev

@@ -33,7 +33,9 @@ std::string names_of(std::span<const DeviceInfo> infos) {
 }  // namespace
 
 Failure no_device(const std::string& why) {
-    return machine_error("no Vulkan device: the loader found no driver" + why, ErrorCode::Unsupported);
+    return machine_error("no Vulkan device: the loader found no driver" + why +
+                             "; Mesa's software driver is in the package mesa-vulkan-drivers",
+                         ErrorCode::Unsupported);
 }
 
 Result<std::size_t> select_device(std::span<const DeviceInfo> infos, const std::string& select) {

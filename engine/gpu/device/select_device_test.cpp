@@ -50,7 +50,9 @@ TEST(SelectDevice, ErrorsNameBothReadingsOfANumberAndWhatThereIs) {
     EXPECT_TRUE(name.error().text.starts_with("device \"voodoo\": no such device; there are 2 "));
     const Result<std::size_t> nothing = select_device({}, "0");
     ASSERT_FALSE(nothing);
-    EXPECT_EQ(nothing.error().text, "no Vulkan device: the loader found no driver");
+    EXPECT_EQ(
+        nothing.error().text,
+        "no Vulkan device: the loader found no driver; Mesa's software driver is in the package mesa-vulkan-drivers");
 }
 
 }  // namespace

@@ -27,13 +27,21 @@ Result<Look> LookReader::read(const toml::table& file) {
     return finish(std::move(look));
 }
 
+/// Is it one of the flat table?
+static bool is_flat_key(std::string_view key) {
+    Look look = default_look();
+    return find_target(look, key, {}).has_value();
+}
+
 void LookReader::read_top(const toml::table& file) {
     const std::vector<std::string> names{"format", "post_process", "stack", "ui", "pulse", "layer"};
     // Of a scene's other tables the reader of scenes reports what it does not know.
     for (const auto& [key, node] : file)
         if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())
             report(key.source().begin, Weight::Slip,
-                   fmt::format("unknown key '{}'{}", printable(key.str()), suggestion(key.str(), names)));
+                   fmt::format(
+                       "unknown key '{}'{}", printable(key.str()),
+                       is_flat_key(key.str()) ? ": it belongs below [post_process]" : suggestion(key.str(), names)));
     const toml::node* const format = file.get("format");
     if (format == nullptr) return;
     const auto* const number = format->as_integer();

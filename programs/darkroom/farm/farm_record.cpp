@@ -170,6 +170,8 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
 
 }  // namespace
 
+fs::path job_path(const fs::path& folder) { return folder / job_file; }
+
 std::string shown(const FrameNumbers& numbers) {
     std::string out;
     for (const auto& [first, last] : ranges_of(numbers))
@@ -216,9 +218,9 @@ bool has_arguments(const FarmJob& job, const std::vector<std::string>& arguments
 
 Result<> check_arguments(const fs::path& folder, const FarmJob& job, const std::vector<std::string>& now) {
     if (has_arguments(job, now)) return {};
-    return darkroom::user_error(
-        fmt::format("{}: its pictures were made with other arguments ({}); remove it, or write elsewhere with -o",
-                    printable(folder.string()), printable(fmt::format("{}", fmt::join(job.arguments, " ")))));
+    return darkroom::user_error(fmt::format(
+        "{}: its pictures were made with other arguments ({}); remove it and its pictures, or write elsewhere with -o",
+        printable(folder.string()), printable(fmt::format("{}", fmt::join(job.arguments, " ")))));
 }
 
 Result<> check_inputs(const fs::path& folder, const FarmJob& job, const FarmInputs& now) {
@@ -242,7 +244,7 @@ Result<> write_job(const fs::path& folder, const FarmJob& job) {
              {"arguments", job.arguments},
              {"inputs", std::move(inputs)}};
     add_names(out, job.names);
-    return write(folder / job_file, out);
+    return write(job_path(folder), out);
 }
 
 Result<> write_record(const fs::path& folder, const ChunkRecord& record) {
@@ -251,12 +253,12 @@ Result<> write_record(const fs::path& folder, const ChunkRecord& record) {
 
 Result<std::optional<FarmJob>> read_job(const fs::path& folder) {
     std::error_code error;
-    const bool is_there = fs::exists(folder / job_file, error);
+    const bool is_there = fs::exists(job_path(folder), error);
     if (error)
         return darkroom::machine_error(
-            fmt::format("{}: cannot be opened: {}", printable((folder / job_file).string()), error.message()));
+            fmt::format("{}: cannot be opened: {}", printable((job_path(folder)).string()), error.message()));
     if (!is_there) return std::optional<FarmJob>();
-    DARKROOM_TRY_VALUE(FarmJob job, read(folder / job_file, job_of));
+    DARKROOM_TRY_VALUE(FarmJob job, read(job_path(folder), job_of));
     return std::optional<FarmJob>(std::move(job));
 }
 

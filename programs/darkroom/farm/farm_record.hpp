@@ -63,6 +63,8 @@ struct ChunkRecord {
 };
 
 [[nodiscard]] Json json_of(const ChunkRecord& record);
+/// Of what was submitted, in the folder of records.
+[[nodiscard]] std::filesystem::path job_path(const std::filesystem::path& folder);
 [[nodiscard]] darkroom::Result<> write_job(const std::filesystem::path& folder, const FarmJob& job);
 [[nodiscard]] darkroom::Result<> write_record(const std::filesystem::path& folder, const ChunkRecord& record);
 /// Of another job: the arguments are the same, as far as a file of JSON has them.

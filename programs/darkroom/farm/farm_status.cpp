@@ -114,7 +114,7 @@ void print(const Status& status) {
     }
     if (!status.missing.empty()) answer(fmt::format("  missing: {}", shown(status.missing)));
     if (made > 0)
-        answer(fmt::format("  {} pictures in {:.1f} s of tasks, {:.2f} s each", made, seconds,
+        answer(fmt::format("  {} picture{} in {:.1f} s of tasks, {:.2f} s each", made, made == 1 ? "" : "s", seconds,
                            seconds / static_cast<double>(made)));
 }
 

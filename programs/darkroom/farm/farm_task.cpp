@@ -13,8 +13,8 @@
 
 #include "confined/process.hpp"
 #include "core/text/param_text.hpp"
-#include "farm_process.hpp"
 #include "farm.hpp"
+#include "farm_process.hpp"
 #include "programs/darkroom/flags/program.hpp"
 #include "programs/darkroom/flags/run_flags.hpp"
 #include "programs/darkroom/run/outputs.hpp"
@@ -70,7 +70,7 @@ class Task {
             DARKROOM_TRY(try_once());
         }
         record_.state = is_done() ? ChunkState::done : ChunkState::failed;
-        DARKROOM_TRY(write());
+        if (!is_written_) DARKROOM_TRY(write());
         if (is_done()) return exit_ok;
         const FrameNumbers left = without(record_.frames, record_.done);
         complain(fmt::format("frames {} failed in {} tries: {}", shown(left), record_.tries,
@@ -94,6 +94,15 @@ class Task {
         for (const FarmFrame& frame : work_.frames) record_.frames.insert(frame.number);
         record_.done = numbers_there(work_);
         there_before_ = record_.done.size();
+        // What an earlier run did stays written where nothing is left to do.
+        if (is_done()) {
+            DARKROOM_TRY_VALUE(const std::vector<ChunkRecord> records, read_records(work_.folder));
+            const auto before = std::ranges::find(records, record_.name, &ChunkRecord::name);
+            if (before != records.end() && before->state == ChunkState::done) {
+                is_written_ = true;
+                return {};
+            }
+        }
         return write();
     }
 
@@ -123,6 +132,7 @@ class Task {
     FarmWork work_;
     ChunkRecord record_;
     std::size_t there_before_ = 0;
+    bool is_written_ = false;  ///< by an earlier run, which did all
     int code_ = exit_machine;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -139,6 +149,22 @@ Result<bool> has_pictures(const fs::path& folder) {
     });
 }
 
+/// Pictures that are older than the job were made by something else, with another look perhaps.
+Result<> check_pictures(const FarmWork& work) {
+    std::error_code error;
+    const fs::file_time_type job = fs::last_write_time(job_path(work.folder), error);
+    for (const FarmFrame& frame : work.frames) {
+        if (error || !is_there(frame.picture)) continue;
+        const fs::file_time_type made = fs::last_write_time(frame.picture, error);
+        if (!error && made < job)
+            return darkroom::user_error(
+                fmt::format("{}: is older than {}: remove it, `touch` it if it is one of these pictures, or write "
+                            "elsewhere with -o",
+                            printable(frame.picture.string()), printable(job_path(work.folder).string())));
+    }
+    return {};
+}
+
 /// What a job of these arguments was submitted with must be what its tasks read. Where nothing was submitted, the first
 /// task writes what the others are held against, as long as a picture of theirs is there.
 Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
@@ -152,12 +178,13 @@ Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const
     if (job) {
         Result<> same = check_arguments(work.folder, *job, flags.task());
         if (same) same = check_inputs(work.folder, *job, inputs);
-        if (same) return {};
+        if (same) return check_pictures(work);
         DARKROOM_TRY_VALUE(const bool stays, has_pictures(work.folder));
         if (stays) return same;
     }
     DARKROOM_TRY(make_folder(work.folder));
-    return write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names});
+    DARKROOM_TRY(write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names}));
+    return check_pictures(work);
 }
 
 int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {

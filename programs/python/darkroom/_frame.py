@@ -251,7 +251,10 @@ class Frame:
             "layer_weights": {name: float(weight) for name, weight in self.layer_weights.items()},
         }
         if self.exposure is not None:
-            out["exposure"] = float(self.exposure)
+            try:
+                out["exposure"] = float(self.exposure)
+            except (TypeError, ValueError):
+                raise Error(f"exposure = {self.exposure!r}: allowed is a number, what light is multiplied by") from None
         for name in LAYERS:
             layer = getattr(self, name)
             if layer is None:

@@ -8,7 +8,7 @@ import numpy
 
 from . import _device, _engine
 from ._error import Error, nearest, of_file, store
-from ._frame import Camera, Frame, as_array, as_frame, from_codes16, size_of, warn
+from ._frame import Camera, Frame, as_array, as_frame, from_codes16, say_once, size_of, warn
 from ._table import Table
 
 _numbers = itertools.count()
@@ -196,6 +196,11 @@ def with_layers(frame, layers):
         return as_frame(frame)
     if isinstance(frame, (Frame, dict)):
         raise Error(f"{next(iter(layers))}: the frame says its layers itself")
+    if set(layers) == {"exposure"}:
+        say_once(
+            "exposure: what the frame's light is multiplied by, which few effects read; the effect of this name is set by "
+            'Stack.default().set("exposure", exposure=...), or by a look'
+        )
     return as_frame({"color": frame, **layers})
 
 
