@@ -176,6 +176,8 @@ TEST_F(Cli, DevicesAreToldToPrograms) {
 TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     const std::string frame = path("frame.exr"), out = path("x.png");
     expect_refused({"help", "devlop"}, 1, "unknown command 'devlop', did you mean 'develop'? allowed is render, ");
+    if (find_effect("bloom") != nullptr)
+        expect_refused({"help", "bloom"}, 1, "help bloom: it is an effect: darkroom effects bloom tells of it, ");
     expect_refused({"help", "develop", "blom"}, 1, "no such effect, did you mean 'bloom'?");
     expect_refused({"devlop"}, 1, "unknown command 'devlop', did you mean 'develop'? allowed is render, develop, ");
     expect_refused({"qqqqqqqq"}, 1, "unknown command 'qqqqqqqq': allowed is render, develop, ");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <darkroom/effect.hpp>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -253,6 +254,11 @@ int print_named(const CLI::App& program, std::span<const std::string> words) {
     for (const std::string& word : words) {
         const CLI::App* const child = child_of(*command, word);
         if (child == nullptr && command != &program) return print_effect(describe(*command), word);
+        if (child == nullptr && darkroom::find_effect(word) != nullptr)
+            return fail_user(
+                fmt::format("help {}: it is an effect: darkroom effects {} tells of it, darkroom help "
+                            "develop {} of its flags",
+                            word, word, word));
         if (child == nullptr) return fail_user(unknown_command(program, word));
         command = child;
     }
