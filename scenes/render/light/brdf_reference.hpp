@@ -85,16 +85,15 @@ inline dvec3 reflected_surroundings(const Reflectance& surface, const dvec3& irr
     return single * reflection + (multiple + surface.diffuse * (dvec3(1) - single - multiple)) * irradiance;
 }
 
-/// Inverse square, windowed as in Karis 2013, equation 9.
+/// KHR_lights_punctual: inverse square, brought to 0 at the range.
 inline double distance_attenuation(double distance, double range) {
-    const double window = std::clamp(1 - std::pow(distance / range, 4), 0.0, 1.0);
-    return window * window / std::max(distance * distance, 1e-4);
+    return std::clamp(1 - std::pow(distance / range, 4), 0.0, 1.0) / std::max(distance * distance, 1e-4);
 }
 
-/// Hermite's cubic between the cosines.
+/// KHR_lights_punctual: the square of what goes straight between the cosines.
 inline double cone_attenuation(double cosine, double outer_cosine, double inner_cosine) {
-    const double t = std::clamp((cosine - outer_cosine) / (inner_cosine - outer_cosine), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
+    const double t = std::clamp((cosine - outer_cosine) / std::max(inner_cosine - outer_cosine, 0.001), 0.0, 1.0);
+    return t * t;
 }
 
 /// Light from above and below.

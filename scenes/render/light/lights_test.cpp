@@ -27,13 +27,17 @@ std::string lights_body(const std::string& shade) {
            test::brdf_shader() + test::shader_part("light/lights.glsl") + "vec4 shade(Pixel pixel) {\n" + shade + "}\n";
 }
 
-TEST(RenderLights, AttenuationIsTheWindowedInverseSquare) {
-    EXPECT_NEAR(reference::distance_attenuation(1, 10), 0.99980001, 1e-8);
-    EXPECT_NEAR(reference::distance_attenuation(5, 10), 0.03515625, 1e-12);
-    EXPECT_NEAR(reference::distance_attenuation(9, 10), 0.3439 * 0.3439 / 81, 1e-12);
+// KHR_lights_punctual: max(min(1 - (distance / range)^4, 1), 0) / distance^2, and the square of a straight line between
+// the cosines of the cone.
+TEST(RenderLights, AttenuationIsThatOfTheExtension) {
+    EXPECT_NEAR(reference::distance_attenuation(1, 10), 0.9999, 1e-12);
+    EXPECT_NEAR(reference::distance_attenuation(5, 10), 0.0375, 1e-12);
+    EXPECT_NEAR(reference::distance_attenuation(9, 10), 0.3439 / 81, 1e-12);
     EXPECT_EQ(reference::distance_attenuation(10, 10), 0);
     EXPECT_EQ(reference::distance_attenuation(11, 10), 0);
     EXPECT_EQ(reference::distance_attenuation(0, 10), 1e4);
+    for (const auto& [cosine, light] : {std::pair(0.4, 0.0), {0.5, 0.0}, {0.6, 0.0625}, {0.7, 0.25}, {0.9, 1.0}})
+        EXPECT_NEAR(reference::cone_attenuation(cosine, 0.5, 0.9), light, 1e-12) << cosine;
 }
 
 TEST(RenderGpuLights, AttenuationAgreesWithTheReference) {

@@ -45,12 +45,19 @@ float light_at(const LightState& lamp, vec3 eye) {
     return luminance / std::max(glm::dot(away, away), 1.0F);
 }
 
+/// How far a lamp's shadows go: to its range, or to the farthest corner of what is drawn, which is nearer where a light
+/// of a model has no range.
+float reach_of(const LightState& lamp, const scene::Box& drawn) {
+    const vec3 farthest = glm::max(glm::abs(drawn.low - lamp.position), glm::abs(drawn.high - lamp.position));
+    return drawn.is_empty() ? lamp.light.range : std::min(lamp.light.range, glm::length(farthest));
+}
+
 /// From a lamp along `axis`; `tangent` of half the angle that the tile without its border sees.
-mat4 tile_matrix(const LightState& lamp, vec3 axis, float tangent, std::uint32_t side) {
+mat4 tile_matrix(const LightState& lamp, float reach, vec3 axis, float tangent, std::uint32_t side) {
     const vec3 helper = std::abs(axis.y) > 0.9F ? vec3(1, 0, 0) : vec3(0, 1, 0);
     const auto texels = static_cast<float>(side);
     const float wide = tangent * texels / (texels - 2.0F * tile_border);
-    const float far = lamp.light.range, near = far * lamp_near_share;
+    const float far = reach, near = far * lamp_near_share;
     mat4 projection(0);
     projection[0][0] = 1 / wide;
     projection[1][1] = -1 / wide;
@@ -91,17 +98,22 @@ LampShadows choose_lamps(const scene::Snapshot& snapshot, std::uint32_t side) {
     places.resize(std::min<std::size_t>(places.size(), max_lamps_with_shadows));
     std::ranges::sort(places);
 
+    scene::Box drawn;
+    for (const scene::Instance& instance : snapshot.instances)
+        if (!instance.bounds.is_empty()) drawn.add(instance.bounds);
     LampShadows out;
     for (const std::uint32_t place : places) {
         const LightState& lamp = snapshot.lights[place];
+        const float reach = reach_of(lamp, drawn);
         const auto first = static_cast<std::uint32_t>(out.world_to_tile.size());
         out.lamps.push_back({.light = place, .first = first, .count = tiles_of(lamp.light)});
         if (out.lamps.back().count == 1) {
             const float tangent = std::tan(std::max(lamp.light.outer_angle, 0.01F));
-            out.world_to_tile.push_back(tile_matrix(lamp, lamp.direction, tangent, side));
+            out.world_to_tile.push_back(tile_matrix(lamp, reach, lamp.direction, tangent, side));
             continue;
         }
-        for (const auto& [x, y, z] : face_axes) out.world_to_tile.push_back(tile_matrix(lamp, vec3(x, y, z), 1, side));
+        for (const auto& [x, y, z] : face_axes)
+            out.world_to_tile.push_back(tile_matrix(lamp, reach, vec3(x, y, z), 1, side));
     }
     return out;
 }

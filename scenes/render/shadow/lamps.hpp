@@ -18,7 +18,8 @@ inline constexpr std::uint32_t tiles_a_row = 8;
 /// Texels of a tile beyond what its lamp lights, to each side: what the filter reaches and a receiver is moved by, so
 /// that the faces of a cube meet without a seam.
 inline constexpr std::uint32_t tile_border = 10;
-/// Casters nearer to a lamp than this share of its range cast nothing: they are what it is made of.
+/// Casters nearer to a lamp than this share of its range, or of the way to the farthest that is drawn, cast nothing:
+/// they are what it is made of.
 inline constexpr float lamp_near_share = 0.005F;
 
 struct LampTiles {

@@ -188,6 +188,10 @@ TEST(RenderGpuLampShadows, LampInAClosedBoxLightsNothingOutside) {
     EXPECT_GT(brightest(shot(snapshot, false)), 0.1F) << "the floor around the box is in view";
     for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft})
         EXPECT_EQ(brightest(shot(snapshot, true, filter)), 0);
+    // As far as lights of models reach that have no range.
+    snapshot.lights[0].light.range = 1e4F;
+    EXPECT_GT(brightest(shot(snapshot, false)), 0.1F);
+    EXPECT_EQ(brightest(shot(snapshot)), 0);
 }
 
 // A screen two metres before the camera, a lamp three metres behind it, and a board between them that neither sees from

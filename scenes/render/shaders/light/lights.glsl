@@ -1,17 +1,17 @@
 // Light that arrives at a point of a surface. Needs frame.glsl, brdf.glsl and shadow.glsl before it where it says so.
 
-// Karis, "Real Shading in Unreal Engine 4", 2013, equation 9, without its 1 in the denominator: the inverse square,
-// brought to 0 at the light's range. Nearer than a centimetre it grows no more.
+// KHR_lights_punctual, "Range Property": the inverse square, brought to 0 at the light's range. Nearer than a centimetre
+// it grows no more.
 float distance_attenuation(float squared_distance, float range) {
     float ratio = squared_distance / max(range * range, 1e-8);
-    float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
-    return window * window / max(squared_distance, 1e-4);
+    return clamp(1.0 - ratio * ratio, 0.0, 1.0) / max(squared_distance, 1e-4);
 }
 
-// 1 inside the inner angle, 0 outside the outer one, smooth between; all angles as cosines, from the cone's axis.
+// KHR_lights_punctual, "Inner and Outer Cone Angles": 1 inside the inner angle, 0 outside the outer one, the square of
+// what goes straight between; all angles as cosines, from the cone's axis.
 float cone_attenuation(float cosine, float outer_cosine, float inner_cosine) {
-    float t = clamp((cosine - outer_cosine) / max(inner_cosine - outer_cosine, 1e-5), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
+    float t = clamp((cosine - outer_cosine) / max(inner_cosine - outer_cosine, 0.001), 0.0, 1.0);
+    return t * t;
 }
 
 // Light from above and from below, over pi, where there is no environment.
