@@ -31,9 +31,10 @@ struct Square {
     vec4 uv{0, 0, 1, 1};
     float anchor_y = 0;
     float is_disc = 0;
+    float covers = 1;  ///< 0: is added to what is behind it
 };
 
-enum class Kind : std::uint8_t { Sprite, Alpha, Additive };
+enum class Kind : std::uint8_t { Sprite, Particle };
 
 /// Squares that one call draws: of one kind, with one texture.
 struct Run {
@@ -61,7 +62,7 @@ std::vector<VkVertexInputAttributeDescription> square_attributes() {
             {1, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Square, previous_position)},
             {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Square, tint)},
             {3, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Square, uv)},
-            {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Square, anchor_y)}};
+            {4, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Square, anchor_y)}};
 }
 
 gpu::PipelineDesc pipeline_desc(Kind kind, const PassSetup& setup, const GpuScene& scene) {
@@ -79,13 +80,12 @@ gpu::PipelineDesc pipeline_desc(Kind kind, const PassSetup& setup, const GpuScen
         desc.colors = setup.formats.colors(opaque, TargetFormats::Layers::Written);
         return desc;
     }
-    const bool is_additive = kind == Kind::Additive;
-    const gpu::ColorTarget blended{
-        .is_blended = true,
-        .source = VK_BLEND_FACTOR_SRC_ALPHA,
-        .destination = is_additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
-        .writes = color_without_alpha};
-    desc.name = is_additive ? "additive particles" : "alpha particles";
+    // Light that alpha has weighed: so one pipeline, in one order, both covers and adds.
+    const gpu::ColorTarget blended{.is_blended = true,
+                                   .source = VK_BLEND_FACTOR_ONE,
+                                   .destination = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+                                   .writes = color_without_alpha};
+    desc.name = "particles";
     desc.fragment = shader_text("sprite/particle_fragment.glsl");
     desc.colors = setup.formats.colors(blended, TargetFormats::Layers::Kept);
     desc.writes_depth = false;
@@ -105,7 +105,7 @@ std::vector<Pending> gather(const scene::Snapshot& snapshot) {
                                   .anchor_y = sprite.anchor_y}});
     for (const scene::ParticleState& emitter : snapshot.emitters)
         for (const scene::Particle& particle : emitter.particles)
-            out.push_back({.kind = emitter.blend == scene::SurfaceBlend::Additive ? Kind::Additive : Kind::Alpha,
+            out.push_back({.kind = Kind::Particle,
                            .image = emitter.image,
                            .square = {.position = particle.position,
                                       .width = particle.size,
@@ -114,27 +114,39 @@ std::vector<Pending> gather(const scene::Snapshot& snapshot) {
                                       .tint = particle.color,
                                       .uv = particle.uv,
                                       .anchor_y = 0.5F,
-                                      .is_disc = emitter.image == no_index ? 1.0F : 0.0F}});
+                                      .is_disc = emitter.image == no_index ? 1.0F : 0.0F,
+                                      .covers = emitter.blend == scene::SurfaceBlend::Additive ? 0.0F : 1.0F}});
     const vec4 depth_row(snapshot.camera.view[0].z, snapshot.camera.view[1].z, snapshot.camera.view[2].z,
                          snapshot.camera.view[3].z);
     for (Pending& pending : out) pending.distance = -glm::dot(depth_row, vec4(pending.square.position, 1));
     return out;
 }
 
-/// Sprites, then alpha-blended particles, then additive ones. Only the order of alpha-blended ones shows in the
-/// picture; the others are kept together by texture first, so that they need few calls.
+/// Sprites, which hide each other: by texture, so that they need few calls, and the nearest first. Then particles, the
+/// farthest first whatever their blending is: smoke covers what glows behind it.
 bool is_drawn_before(const Pending& a, const Pending& b) {
-    if (a.kind != b.kind) return a.kind < b.kind;
-    if (a.kind != Kind::Alpha && a.image != b.image) return a.image < b.image;
-    // Sprites hide each other: nearest first.
-    return a.kind == Kind::Sprite ? a.distance < b.distance : a.distance > b.distance;
+    const bool is_sprite = a.kind == Kind::Sprite;
+    if (is_sprite != (b.kind == Kind::Sprite)) return is_sprite;
+    if (!is_sprite) return a.distance > b.distance;
+    return a.image != b.image ? a.image < b.image : a.distance < b.distance;
+}
+
+void sort(std::vector<Pending>& list) {
+    std::ranges::stable_sort(list, is_drawn_before);
+    // Among those that are added, with nothing between them that covers, the order does not show: by texture.
+    const auto covers = [](const Pending& pending) { return pending.square.covers > 0; };
+    for (auto first = std::ranges::find_if_not(list, covers); first != list.end();) {
+        const auto last = std::find_if(first, list.end(), covers);
+        std::ranges::stable_sort(first, last, {}, &Pending::image);
+        first = std::find_if_not(last, list.end(), covers);
+    }
 }
 
 }  // namespace
 
 struct BillboardPass::State {
     gpu::Context* context = nullptr;
-    std::array<gpu::Pipeline, 3> pipelines;  ///< by Kind
+    std::array<gpu::Pipeline, 2> pipelines;  ///< by Kind
     std::vector<Slot> slots;
 
     void record(VkCommandBuffer commands, VkDescriptorSet frame_set, std::uint32_t slot, bool are_sprites) const;
@@ -144,7 +156,7 @@ Result<BillboardPass> BillboardPass::create(gpu::Context& context, const PassSet
     BillboardPass pass;
     pass.state_ = std::make_shared<State>();
     pass.state_->context = &context;
-    for (const Kind kind : {Kind::Sprite, Kind::Alpha, Kind::Additive}) {
+    for (const Kind kind : {Kind::Sprite, Kind::Particle}) {
         DARKROOM_TRY_VALUE(gpu::Pipeline made, gpu::Pipeline::create(context, pipeline_desc(kind, setup, scene)));
         pass.state_->pipelines[static_cast<std::size_t>(kind)] = std::move(made);
     }
@@ -157,7 +169,7 @@ Result<> BillboardPass::prepare(const scene::Snapshot& snapshot, GpuScene& scene
     own.runs.clear();
     std::vector<Pending> list = gather(snapshot);
     if (list.empty()) return {};
-    std::ranges::stable_sort(list, is_drawn_before);
+    sort(list);
 
     if (own.capacity < list.size()) {
         const std::size_t capacity = list.size() + list.size() / 2;

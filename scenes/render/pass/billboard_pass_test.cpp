@@ -272,11 +272,14 @@ TEST(RenderGpuBillboards, ParticlesOfAllEmittersAreDrawnBackToFront) {
     expect_color(test.pixel(32, 32), vec4(expected, 0));
 }
 
-TEST(RenderGpuBillboards, AdditiveParticlesComeAfterAlphaBlendedOnes) {
+TEST(RenderGpuBillboards, AdditiveParticlesAreCoveredByThoseBeforeThem) {
     Billboards test;
-    test.snapshot.emitters = {
-        {.image = White, .blend = scene::SurfaceBlend::Additive, .particles = {particle({0, 0, -2}, {3, 0, 0, 1})}},
-        {.image = White, .particles = {particle({0, 0, 2}, {0, 1, 0, 0.5F})}}};
+    scene::ParticleState glow{.image = White, .blend = scene::SurfaceBlend::Additive};
+    glow.particles = {particle({0, 0, -2}, {3, 0, 0, 1})};
+    test.snapshot.emitters = {glow, {.image = White, .particles = {particle({0, 0, 2}, {0, 1, 0, 0.5F})}}};
+    test.draw(vec4(1, 1, 1, 0));
+    expect_color(test.pixel(32, 32), {2, 1, 0.5F, 0});
+    test.snapshot.emitters[0].particles[0].position.z = 4;
     test.draw(vec4(1, 1, 1, 0));
     expect_color(test.pixel(32, 32), {3.5F, 1, 0.5F, 0});
 }
@@ -315,7 +318,9 @@ TEST(RenderGpuBillboards, SquaresOfOneTextureAreDrawnByOneCall) {
         sparks.particles.push_back(particle({0, 0, z}, vec4(1)));
         embers.particles.push_back(particle({0, 0, z}, vec4(1)));
     }
-    test.snapshot.emitters = {sparks, embers, {.image = White, .particles = sparks.particles}};
+    scene::ParticleState smoke{.image = White, .particles = sparks.particles};
+    for (scene::Particle& particle : smoke.particles) particle.position.z += 2;
+    test.snapshot.emitters = {sparks, embers, smoke};
     gpu::Dispatch& vk = test.stage.context.vk;
     real_draw = vk.CmdDraw;
     draws = 0;

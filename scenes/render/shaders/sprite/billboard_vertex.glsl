@@ -6,7 +6,7 @@ layout(location = 0) in vec4 place;           // world position of the anchor; w
 layout(location = 1) in vec4 previous_place;  // a moment ago; w: height
 layout(location = 2) in vec4 tint;
 layout(location = 3) in vec4 uv_frame;  // left, top, right, bottom
-layout(location = 4) in vec2 settings;  // anchor: 0 bottom edge, 1 top edge; 1: a disc without texture
+layout(location = 4) in vec3 settings;  // anchor: 0 bottom edge, 1 top edge; 1: a disc without texture; 0: is added
 
 layout(location = 0) out Varyings to_fragment;
 
@@ -35,6 +35,7 @@ void main() {
     to_fragment.uv_frame = uv_frame;
     to_fragment.uv = mix(uv_frame.xw, uv_frame.zy, corner);
     to_fragment.disc = settings.y == 0.0 ? vec2(0) : corner * 2.0 - 1.0;
+    to_fragment.covers = settings.z;
     to_fragment.clip = gl_Position;
     vec3 previous = previous_place.xyz + previous_axes() * offset;
     to_fragment.previous_clip = frame.previous_view_projection * vec4(previous, 1.0);
