@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Keyframes after the glTF 2.0 specification, appendix C "Animation Sampler Interpolation Modes".
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -13,6 +14,32 @@ double looped(double time, double duration) {
     if (!(duration > 0) || !std::isfinite(time)) return 0;
     const double rest = std::fmod(time, duration);
     return rest < 0 ? rest + duration : rest;
+}
+
+/// How many times a clip that loops has begun again.
+double rounds(double time, double duration) { return std::round((time - looped(time, duration)) / duration); }
+
+/// Between two keys of a channel, of its number that differs the most.
+double gap(const AnimationChannel& channel, std::size_t a, std::size_t b) {
+    const bool is_spline = channel.interpolation == Interpolation::CubicSpline;
+    const auto value = [&](std::size_t key, std::size_t i) {
+        return static_cast<double>(channel.values[(is_spline ? key * 3 + 1 : key) * channel.width + i]);
+    };
+    double apart = 0, against = 0;  // quaternions of both signs are one rotation
+    for (std::size_t i = 0; i < channel.width; ++i) {
+        apart = std::max(apart, std::abs(value(a, i) - value(b, i)));
+        against = std::max(against, std::abs(value(a, i) + value(b, i)));
+    }
+    return channel.property == AnimatedProperty::Rotation ? std::min(apart, against) : apart;
+}
+
+/// Whether the way from the last key to the first is longer than any other that takes `seconds`.
+bool jumps_at_its_end(const AnimationChannel& channel, double seconds) {
+    double fastest = 0;
+    for (std::size_t key = 1; key < channel.times.size(); ++key)
+        fastest = std::max(fastest, gap(channel, key - 1, key) / (static_cast<double>(channel.times[key]) -
+                                                                  static_cast<double>(channel.times[key - 1])));
+    return gap(channel, channel.times.size() - 1, 0) > fastest * seconds;
 }
 
 quat to_quat(std::span<const float> xyzw) { return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]}; }
@@ -170,6 +197,18 @@ Pose pose(const Model& model, std::uint32_t animation, double time, Skins skins)
                              (i < skin.inverse_bind.size() ? skin.inverse_bind[i] : mat4(1)));
     }
     return out;
+}
+
+double motion_start(const Model& model, std::uint32_t animation, double time, double previous_time) {
+    if (animation >= model.animations.size()) return previous_time;
+    const Animation& clip = model.animations[animation];
+    const auto duration = static_cast<double>(clip.duration);
+    if (!(duration > 0) || !std::isfinite(time) || !std::isfinite(previous_time)) return previous_time;
+    if (rounds(time, duration) == rounds(previous_time, duration)) return previous_time;
+    const bool jumps = std::ranges::any_of(clip.channels, [&](const AnimationChannel& channel) {
+        return Sampler::is_complete(channel) && jumps_at_its_end(channel, std::abs(time - previous_time));
+    });
+    return jumps ? time : previous_time;
 }
 
 std::vector<vec3> deform(const Primitive& primitive, const mat4& world, std::span<const mat4> joints,

@@ -99,7 +99,8 @@ class Builder {
         const std::uint32_t clip = clip_of(scene_, entity, model, &out.warnings);
         const std::optional<ModelReference>& reference = scene_.entities[entity].model;
         const double speed = reference ? static_cast<double>(reference->animation_speed) : 1;
-        const Poses poses{&poses_.get(number, clip, time_ * speed), &poses_.get(number, clip, previous_time_ * speed),
+        const double now = time_ * speed, before = motion_start(model, clip, now, previous_time_ * speed);
+        const Poses poses{&poses_.get(number, clip, now), &poses_.get(number, clip, before),
                           reference ? variant_of(model, reference->variant) : no_index};
         std::vector<std::uint32_t> materials(model.materials.size() + 1, no_index);
         for (std::uint32_t node = 0; node < model.nodes.size(); ++node)

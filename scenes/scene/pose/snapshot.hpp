@@ -142,6 +142,10 @@ struct Pose {
 /// `animation`: index, or no_index for the pose of the file. The clip loops.
 [[nodiscard]] Pose pose(const Model& model, std::uint32_t animation, double time, Skins skins = Skins::AllNodes);
 
+/// The time that motion at `time` is measured from: the one before, or `time` itself, so that there is none, where the
+/// clip has begun again in between and jumps there: further than it moves anywhere in as much time.
+[[nodiscard]] double motion_start(const Model& model, std::uint32_t animation, double time, double previous_time);
+
 /// Vertices as the GPU should place them: the CPU's own skinning and morphing, for tests and for bounds.
 [[nodiscard]] std::vector<vec3> deform(const Primitive& primitive, const mat4& world, std::span<const mat4> joints,
                                        std::span<const float> weights);

@@ -103,14 +103,16 @@ CameraNode model_camera(const Scene& scene, const Assets& assets) {
     return {};
 }
 
-View view_of_node(const Scene& scene, const Assets& assets, const CameraNode& place, double time, const Box& bounds,
-                  PoseCache& poses) {
+/// `now`: the time of the picture, which `time` is before or is.
+View view_of_node(const Scene& scene, const Assets& assets, const CameraNode& place, double time, double now,
+                  const Box& bounds, PoseCache& poses) {
     const std::uint32_t number = assets_of(assets, place.entity).model;
     const Model& model = assets.models[number];
     const ModelCamera& camera = model.cameras[model.nodes[place.node].camera];
     const std::optional<ModelReference>& reference = scene.entities[place.entity].model;
     const double speed = reference ? static_cast<double>(reference->animation_speed) : 1;
-    const Pose& pose = poses.get(number, clip_of(scene, place.entity, model, nullptr), time * speed);
+    const std::uint32_t clip = clip_of(scene, place.entity, model, nullptr);
+    const Pose& pose = poses.get(number, clip, motion_start(model, clip, now * speed, time * speed));
     const mat4 world = entity_world(scene, place.entity, time) * pose.nodes[place.node];
     View view{.position = vec3(world[3]),
               .forward = turned(world, vec3(0, 0, -1), vec3(0, 0, -1)),
@@ -232,7 +234,7 @@ void add_camera(const Scene& scene, const Assets& assets, const SnapshotOptions&
         if (scene.camera.is_given)
             view = scene_view(scene.camera, time);
         else if (node.entity != no_index)
-            view = view_of_node(scene, assets, node, time, fitted, poses);
+            view = view_of_node(scene, assets, node, time, options.time, fitted, poses);
         const bool is_fitted = !scene.camera.is_given && node.entity == no_index;
         if (is_fitted) view.field_of_view = scene.camera.field_of_view;
         view.field_of_view = orbit.field_of_view.value_or(view.field_of_view);

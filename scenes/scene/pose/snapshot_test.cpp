@@ -229,6 +229,31 @@ TEST(SceneSnapshot, SkinsAndMorphsAreInWorldSpace) {
     EXPECT_EQ(snapshot(scene, assets, {.time = 2, .previous_time = 2}).previous_joints, found.joints);
 }
 
+// A node that goes from -1 to 1 in a second, and begins again; or comes back as it began.
+TEST(SceneSnapshot, AClipThatJumpsToItsBeginningMovesNothingThere) {
+    Assets assets;
+    Model& model = assets.models.emplace_back();
+    model.meshes = {{.primitives = {Primitive{.vertices = std::vector<Vertex>(3)}}}};
+    model.nodes = {{.mesh = 0}};
+    model.animations = {
+        {.channels = {{.times = {0, 1}, .values = {-1, 0, 0, 1, 0, 0}}}, .duration = 1},
+        {.channels = {{.times = {0, 0.5F, 1}, .values = {-1, 0, 0, 1, 0, 0, -1, 0, 0}}}, .duration = 1}};
+    assets.entities = {{.model = 0}};
+    Scene scene = with_camera({{.name = "door", .model = ModelReference{}}});
+    const auto motion = [&](double time, double previous_time) {
+        const Snapshot found = snapshot(scene, assets, {.time = time, .previous_time = previous_time});
+        return found.instances[0].world[3].x - found.instances[0].previous_world[3].x;
+    };
+    EXPECT_NEAR(motion(0.9, 0.8), 0.2F, 1e-5F);
+    EXPECT_EQ(motion(1, 0.9), 0) << "1.8 the other way, if it were motion";
+    EXPECT_EQ(motion(1.05, 0.95), 0);
+    EXPECT_EQ(motion(2.95, 3.05), 0);
+    EXPECT_NEAR(motion(1.15, 1.05), 0.2F, 1e-5F);
+    scene.entities[0].model->animation = "1";
+    EXPECT_NEAR(motion(1, 0.9), -0.4F, 1e-5F);
+    EXPECT_NEAR(motion(1.1, 0.95), 0.2F, 1e-5F);
+}
+
 TEST(SceneSnapshot, ClipsAreFoundByNameOrNumber) {
     Assets assets;
     Model& model = assets.models.emplace_back();
