@@ -67,8 +67,9 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
     block.camera_forward =
         vec4(-camera.view[0].z, -camera.view[1].z, -camera.view[2].z, std::exp2(settings.mip_bias) - 1);
     block.target_size = vec4(width, height, 1 / width, 1 / height);
-    block.planes =
-        vec4(camera.near_distance, camera.far_distance, static_cast<float>(snapshot.time), settings.exposure);
+    // The view of depth, which alone reads the far distance, is drawn to somewhere.
+    const float far_distance = std::isinf(camera.far_distance) ? camera.near_distance * 1e4F : camera.far_distance;
+    block.planes = vec4(camera.near_distance, far_distance, static_cast<float>(snapshot.time), settings.exposure);
     block.light_counts =
         uvec4(directional_lights(snapshot).size(), lights_of(snapshot, LightType::Point, max_point_lights).size(),
               lights_of(snapshot, LightType::Spot, max_spot_lights).size(), 0);

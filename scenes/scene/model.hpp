@@ -128,7 +128,7 @@ struct Vertex {
     vec3 normal{0, 1, 0};
     vec4 tangent{0};  ///< w: handedness; all 0: no normal map, or none to be had
     vec2 uv0{0}, uv1{0};
-    std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< linear
+    vec4 color{1};  ///< linear
 };
 
 /// Joint indices of a skinned vertex and their weights, which sum to 1.

@@ -333,6 +333,15 @@ TEST(RenderGpuMesh, WideTexturesKeepTheirNumbers) {
     EXPECT_EQ(shown(scene::ImageKind::Halves, glm::packHalf1x16(12)), 12);
 }
 
+TEST(RenderGpuMesh, VertexColoursKeepWhatEightBitsDoNotHold) {
+    scene::Primitive primitive = triangle();
+    for (scene::Vertex& vertex : primitive.vertices) vertex.color = vec4(0.0019F, 1 / 65535.0F, 0.5001F, 1);
+    Renderer renderer = renderer_for({.extent = small}, assets_of(primitive));
+    const std::array<float, 4> found = middle(shoot(renderer, snapshot_of_model(plain(vec4(1)))).color);
+    EXPECT_NEAR(found[0] / 0.0019F, 1, 1e-3F);  // as halves have it
+    EXPECT_NEAR(found[1] * 65535, 1, 1e-2F);
+}
+
 TEST(RenderGpuMesh, TexturesKeepTheirLevelAtTheEdgesOfTriangles) {
     // Half white, half black: every smaller level is grey. The mesh shows a piece of the white half, much enlarged.
     scene::Assets assets;

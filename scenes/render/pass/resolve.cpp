@@ -82,7 +82,8 @@ ResolveUse Resolve::use() const { return use_of(*kernel_); }
 
 void Resolve::prepare(const scene::CameraState& camera, const Targets& targets, std::uint32_t slot) {
     const std::array<std::array<float, 4>, 1> custom{std::array{
-        camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F, 0.0F}};
+        camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F,
+        camera.near_distance / camera.far_distance}};
     const std::vector<gpu::Binding> inputs = inputs_of(targets), outputs = outputs_of(targets);
     const gpu::Kernel::Block own{blocks_.handle, slot * block_stride_, gpu::own_block_size(kernel_->spec())};
     gpu::write_own_block(kernel_->spec(), whole(targets), inputs, custom, {},

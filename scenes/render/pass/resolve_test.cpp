@@ -5,6 +5,7 @@
 
 #include <darkroom/composer.hpp>
 #include <darkroom/effects.hpp>
+#include <limits>
 #include <set>
 
 #include "render/renderer_test_support.hpp"
@@ -31,6 +32,20 @@ TEST(RenderGpuResolve, OneSampleHasHardEdges) {
     EXPECT_EQ(shot.color.at(19, 24)[0], 0);
     EXPECT_EQ(shot.color.at(21, 24)[0], 4);
     EXPECT_TRUE(shot.color.at(20, 24)[0] == 0 || shot.color.at(20, 24)[0] == 4);
+}
+
+TEST(RenderGpuResolve, AnInfiniteFarPlaneCutsNothingAndHasDepth) {
+    scene::Snapshot snapshot = snapshot_of(resolved_extent);
+    snapshot.camera.far_distance = std::numeric_limits<float>::infinity();
+    snapshot.camera.projection[2].z = 0;
+    snapshot.camera.projection[3].z = near_plane;
+    snapshot.camera.previous_projection = snapshot.camera.projection;
+    add_wall(snapshot, 5000, 9000, plain(vec4(1)));
+    Renderer renderer = renderer_for({.extent = resolved_extent}, {}, dark_scene());
+    const Shot shot = shoot(renderer, snapshot);
+    EXPECT_EQ(shot.color.at(32, 24)[0], 1);
+    EXPECT_NEAR(shot.depth.at(32, 24)[0], 5000, 0.1F);
+    EXPECT_NEAR(shot.velocity.at(32, 24)[0], 0, 1e-3F);
 }
 
 TEST(RenderGpuResolve, EdgesAreWeighedByTheInverseOfOnePlusLuminance) {

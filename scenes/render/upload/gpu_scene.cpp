@@ -301,7 +301,7 @@ MeshInput mesh_input(bool is_skinned, VkVertexInputRate rate) {
                            {2, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
                            {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv0)},
                            {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv1)},
-                           {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(Vertex, color)},
+                           {5, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, color)},
                            {6, 1, VK_FORMAT_R16G16B16A16_UINT, offsetof(VertexSkin, joints)},
                            {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(VertexSkin, weights)}}};
 }

@@ -84,10 +84,6 @@ vec3 vec3_at(const Numbers& numbers, std::size_t i) {
     return {value[0], value[1], value[2]};
 }
 
-std::uint8_t to_byte(float value) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255));
-}
-
 void warn_without_extent(Document& document, int accessor) {
     const tinygltf::Accessor& source = document.model().accessors[static_cast<std::size_t>(accessor)];
     if (source.minValues.size() != 3 || source.maxValues.size() != 3)
@@ -116,7 +112,8 @@ Result<> read_vertices(Document& document, AttributeReader& reader, const tinygl
     DARKROOM_TRY_VALUE(auto colors, reader.read("COLOR_0", 3, Integers::Normalized, true));
     const auto is_outside = [](float value) { return value < 0 || value > 1; };
     if (colors && std::any_of(colors->values.begin(), colors->values.end(), is_outside))
-        document.faults().warn(fmt::format("/accessors/{}: colours outside [0, 1]", source.attributes.at("COLOR_0")));
+        document.faults().warn(fmt::format("/accessors/{}: colours outside [0, 1], which are brought into it",
+                                           source.attributes.at("COLOR_0")));
     for (std::size_t i = 0; i < reader.count(); ++i) {
         Vertex& vertex = primitive.vertices[i];
         if (normals) {
@@ -134,7 +131,7 @@ Result<> read_vertices(Document& document, AttributeReader& reader, const tinygl
         if (uv1) vertex.uv1 = {uv1->values[i * 2], uv1->values[i * 2 + 1]};
         if (colors)
             for (std::uint32_t c = 0; c < colors->components; ++c)
-                vertex.color[c] = to_byte(colors->values[i * colors->components + c]);
+                vertex.color[static_cast<int>(c)] = std::clamp(colors->values[i * colors->components + c], 0.0F, 1.0F);
     }
     return {};
 }
@@ -307,7 +304,8 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     DARKROOM_TRY(budget.take(pointer, "corners", corners.size(), 3 * sizeof(std::uint32_t)));
     primitive.indices = triangles_of(corners, source.mode);
     if (!has_normals) {
-        const std::size_t vertex_size = sizeof(Vertex) + sizeof(VertexSkin) + primitive.targets.size() * sizeof(vec3);
+        const std::size_t vertex_size =
+            sizeof(Vertex) + sizeof(VertexSkin) + primitive.targets.size() * 2 * sizeof(vec3);
         DARKROOM_TRY(budget.take(pointer, "vertices", primitive.indices.size(), vertex_size));
         make_flat(primitive);
     } else {

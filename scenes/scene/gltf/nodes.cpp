@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "scene/gltf/convert.hpp"
@@ -205,7 +206,8 @@ ModelCamera convert_camera(Document& document, std::size_t index) {
         camera.field_of_view = as_float(source.perspective.yfov * 180 / std::numbers::pi);
     }
     // Perspective cameras may leave the far plane out: it is at infinity.
-    camera.far_distance = far_distance > 0 ? far_distance : std::max(1000.0F, camera.near_distance * 1e4F);
+    const float otherwise = is_orthographic ? camera.near_distance + 1000 : std::numeric_limits<float>::infinity();
+    camera.far_distance = far_distance > 0 ? far_distance : otherwise;
     const bool is_good =
         camera.near_distance >= 0 && camera.far_distance > camera.near_distance &&
         (is_orthographic ? camera.ortho_height > 0

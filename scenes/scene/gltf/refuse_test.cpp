@@ -141,7 +141,7 @@ TEST_F(SceneGltfRefuse, WhatIsMadeOfAPrimitiveIsToldWithItsBytes) {
         };
     };
     const auto nothing = [](TestModel&, nlohmann::json&) {};
-    expect("2000000 vertices of 60 bytes, ", with(2'000'000, nothing));
+    expect("2000000 vertices of 72 bytes, ", with(2'000'000, nothing));
     expect("1800000 corners of 4 bytes, ", with(1'800'000, nothing));
     expect("1600000 corners of 12 bytes, ", with(1'600'000, nothing));
     expect("1000000 skinned vertices of 88 bytes, ", with(1'000'000, [&](TestModel& test, nlohmann::json& primitive) {

@@ -2,6 +2,7 @@
 #include "scene/mesh/geometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <queue>
 #include <tuple>
@@ -53,13 +54,26 @@ void make_flat(Primitive& primitive) {
     rearrange(primitive, corners);
     primitive.indices.resize(corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-        Vertex* vertex = &primitive.vertices[i];
-        const vec3 normal =
-            glm::cross(vertex[1].position - vertex[0].position, vertex[2].position - vertex[0].position);
+    for (MorphTarget& target : primitive.targets) target.normals.assign(corners.size(), vec3(0));
+    for (std::size_t first = 0; first + 2 < corners.size(); first += 3) {
+        // Twice as long as the triangle is large.
+        const auto normal_of = [&](const MorphTarget* target) {
+            std::array<vec3, 3> corner;
+            for (std::size_t i = 0; i < 3; ++i)
+                corner[i] = primitive.vertices[first + i].position + (target ? target->positions[first + i] : vec3(0));
+            return glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        };
+        const vec3 normal = normal_of(nullptr);
         const float length = glm::length(normal);
-        if (!(length > 0) || !std::isfinite(length)) continue;
-        for (int corner = 0; corner < 3; ++corner) vertex[corner].normal = normal / length;
+        const bool is_flat = length > 0 && std::isfinite(length);
+        for (std::size_t i = first; is_flat && i < first + 3; ++i) primitive.vertices[i].normal = normal / length;
+        for (MorphTarget& target : primitive.targets) {
+            const vec3 moved = normal_of(&target);
+            const float moved_length = glm::length(moved);
+            if (!(moved_length > 0) || !std::isfinite(moved_length)) continue;
+            const vec3 delta = moved / (is_flat ? length : moved_length) - primitive.vertices[first].normal;
+            std::fill_n(target.normals.begin() + static_cast<std::ptrdiff_t>(first), 3, delta);
+        }
     }
 }
 

@@ -17,7 +17,9 @@ namespace darkroom::scene {
 /// Vertex i becomes what vertex from[i] was, in all arrays but the indices.
 void rearrange(Primitive& primitive, std::span<const std::uint32_t> from);
 
-/// Gives every triangle vertices of its own, with its normal.
+/// Gives every triangle vertices of its own, with its normal, and every morph target the change of it (glTF 2.0
+/// specification, 3.7.2.2). Changes are of normals as long as triangles are large against the one at rest: where
+/// targets move corners along one direction, what is between two weights is exact.
 void make_flat(Primitive& primitive);
 
 /// Files may keep the vertices of many primitives in one array, of which each uses a part.

@@ -98,9 +98,9 @@ TEST_F(ScenePackedDraco, AMeshIsWhatWasPackedByBothMethods) {
         }
         EXPECT_NEAR(area, 1, 1e-3F);
         for (const Vertex& vertex : primitive.vertices) {
-            EXPECT_NEAR(vertex.position.x * side, vertex.color[0], 1e-2F);
-            EXPECT_NEAR(vertex.position.y * side, vertex.color[1], 1e-2F);
-            EXPECT_EQ(vertex.color[2], 7);
+            EXPECT_NEAR(vertex.position.x * side, vertex.color.x * 255, 1e-2F);
+            EXPECT_NEAR(vertex.position.y * side, vertex.color.y * 255, 1e-2F);
+            EXPECT_FLOAT_EQ(vertex.color.z, 7 / 255.0F);
             EXPECT_LT(glm::length(vertex.normal - vec3(0, 0, 1)), 1e-2F);
         }
     }
