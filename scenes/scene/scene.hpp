@@ -71,7 +71,7 @@ struct Material {
     std::optional<SurfaceBlend> blend;  ///< default: Opaque, or Alpha where opacity or alpha is below 1
     std::optional<vec3> emissive;
     float emissive_strength = 1;
-    float alpha_cutoff = 0.5F;
+    std::optional<float> alpha_cutoff;  ///< 0.5
     Writes writes = Writes::All;
 };
 

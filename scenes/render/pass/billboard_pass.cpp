@@ -185,7 +185,7 @@ Result<> BillboardPass::prepare(const scene::Snapshot& snapshot, GpuScene& scene
             ++own.runs.back().count;
             continue;
         }
-        DARKROOM_TRY_VALUE(VkDescriptorSet texture, scene.texture(pending.image));
+        DARKROOM_TRY_VALUE(VkDescriptorSet texture, scene.texture(pending.image, pending.kind == Kind::Sprite));
         own.runs.push_back({.kind = pending.kind, .texture = texture, .first = i, .count = 1});
     }
     return {};

@@ -2,8 +2,11 @@
 #include "render/pass/draw_list.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <tuple>
+
+#include "render/upload/gpu_scene.hpp"
 
 namespace darkroom::render {
 
@@ -14,7 +17,7 @@ using scene::Snapshot;
 using scene::SurfaceBlend;
 
 /// What one call cannot change: pipeline state and textures.
-using SurfaceKey = std::array<std::uint32_t, 6 + 2 * scene::material_textures>;
+using SurfaceKey = std::array<std::uint32_t, 7 + 2 * scene::material_textures>;
 
 SurfaceKey surface_key(const scene::SnapshotMaterial& material) {
     const scene::ModelMaterial& surface = material.surface;
@@ -26,6 +29,7 @@ SurfaceKey surface_key(const scene::SnapshotMaterial& material) {
     key[next++] = shader_layers(surface);
     key[next++] = material.model;
     key[next++] = material.entity_texture;
+    key[next++] = std::bit_cast<std::uint32_t>(texture_cutoff(material));
     for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(surface)) {
         key[next++] = texture->image;
         key[next++] = static_cast<std::uint32_t>(texture->wrap_u) + 4 * static_cast<std::uint32_t>(texture->wrap_v) +

@@ -333,6 +333,60 @@ TEST(RenderGpuMesh, WideTexturesKeepTheirNumbers) {
     EXPECT_EQ(shown(scene::ImageKind::Halves, glm::packHalf1x16(12)), 12);
 }
 
+// A square of 256 texels, of leaves or of what is left between them, from 256 pixels down to 16.
+TEST(RenderGpuMesh, WhatIsCutOutKeepsItsShareAtEveryDistance) {
+    constexpr std::uint32_t side = 256;
+    for (const bool is_hedge : {false, true}) {
+        std::vector<float> alphas(side * side, 0.0F);
+        std::uint32_t random = 1;
+        for (int leaf = 0; leaf < 330; ++leaf) {
+            const auto next = [&] { return static_cast<float>((random = random * 1664525U + 1013904223U) >> 8U); };
+            const float center_x = next() / 65536, center_y = next() / 65536, turn = next() / 65536;
+            for (int i = -12; i <= 12; ++i)
+                for (int j = -12; j <= 12; ++j) {
+                    const auto x = static_cast<float>(j), y = static_cast<float>(i);
+                    const float along = x * std::cos(turn) + y * std::sin(turn);
+                    const float across = y * std::cos(turn) - x * std::sin(turn);
+                    const std::uint32_t column = static_cast<std::uint32_t>(center_x + x + side) % side;
+                    float& alpha = alphas[static_cast<std::uint32_t>(center_y + y + side) % side * side + column];
+                    alpha = std::max(alpha, 1.75F - 1.5F * std::hypot(along / 8, across / 2.2F));
+                }
+        }
+        scene::Image image{.name = "leaves", .width = side, .height = side, .rgba = {}};
+        float share = 0;
+        for (const float alpha : alphas) {
+            const auto code = static_cast<std::uint8_t>(std::clamp(is_hedge ? 1 - alpha : alpha, 0.0F, 1.0F) * 255);
+            image.rgba.insert(image.rgba.end(), {255, 255, 255, code});
+            share += code >= 128 ? 1.0F / (side * side) : 0;
+        }
+        scene::Primitive square;
+        for (const vec2& corner : {vec2(0, 1), vec2(1, 1), vec2(1, 0), vec2(0, 0)})
+            square.vertices.push_back({.position = vec3(corner.x - 0.5F, 0.5F - corner.y, -4), .uv0 = corner});
+        square.indices = {0, 1, 2, 0, 2, 3};
+        scene::Assets assets = assets_of(square);
+        assets.models[0].images = {image};
+        // A factor takes alpha down, and the cutoff with it.
+        scene::SnapshotMaterial material = plain({1, 1, 1, 0.6F}, SurfaceBlend::Mask);
+        material.surface.alpha_cutoff = 0.3F;
+        material.surface.base_color_texture.image = 0;
+        material.model = 0;
+        assets.models[0].materials = {material.surface};
+        Renderer renderer = renderer_for({.extent = {side, side}}, assets, dark_scene());
+        for (const float pixels : {256.0F, 64.0F, 32.0F, 16.0F}) {
+            scene::Snapshot snapshot = snapshot_of_model(material);
+            snapshot.camera = front_camera({side, side}, 1);
+            const float size = pixels / side, off = 0.37F / side;
+            snapshot.instances[0].world = glm::scale(glm::translate(mat4(1), {off, off, 0}), {size, size, 1});
+            snapshot.instances[0].previous_world = snapshot.instances[0].world;
+            const Pixels color = shoot(renderer, snapshot).color;
+            float lit = 0;
+            for (std::size_t i = 0; i < color.rgba.size(); i += 4) lit += color.rgba[i];
+            EXPECT_NEAR(lit / (pixels * pixels) / share, 1, 0.2F)
+                << pixels << (is_hedge ? " of a hedge" : " of leaves");
+        }
+    }
+}
+
 TEST(RenderGpuMesh, VertexColoursKeepWhatEightBitsDoNotHold) {
     scene::Primitive primitive = triangle();
     for (scene::Vertex& vertex : primitive.vertices) vertex.color = vec4(0.0019F, 1 / 65535.0F, 0.5001F, 1);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <deque>
 #include <map>
-#include <optional>
 #include <set>
 #include <thread>
 #include <tuple>
@@ -20,7 +19,8 @@ namespace darkroom::render {
 namespace {
 
 // The textures of a scene on the device, by which image and which use: base colour and emissive decode sRGB, the others
-// are linear, so an image that is used both ways is there twice. Also the samplers, by wrap and filter.
+// are linear, and alpha is ignored, weighs colour or cuts it out, so an image that is used in two ways is there twice.
+// Also the samplers, by wrap and filter.
 
 enum class Transfer : std::uint8_t { Linear, Srgb };
 
@@ -28,6 +28,7 @@ enum class Transfer : std::uint8_t { Linear, Srgb };
 struct TextureKey {
     std::uint32_t model = scene::no_index, image = scene::no_index;
     Transfer transfer = Transfer::Linear;
+    AlphaUse alpha{};
     friend auto operator<=>(const TextureKey&, const TextureKey&) = default;
 };
 
@@ -39,10 +40,12 @@ class GpuTextures {
     ~GpuTextures();
 
     /// Everything that the materials of the assets and its entities may use.
-    Result<> create(const scene::Assets& assets, Uploader& uploader);
+    Result<> create(const scene::Assets& assets, std::span<const scene::SnapshotMaterial> materials,
+                    Uploader& uploader);
 
     static constexpr std::size_t white = 0, flat_normal = 1;
-    /// A number for view(); `otherwise` where there is no such texture, because its image is missing or broken.
+    /// A number for view(), of another use of alpha where this one is not there, as for pictures without holes;
+    /// `otherwise` where there is no such texture, because its image is missing or broken.
     [[nodiscard]] std::size_t find(const TextureKey& key, std::size_t otherwise) const;
     [[nodiscard]] VkImageView view(std::size_t texture) const { return images_[texture].view; }
     [[nodiscard]] Result<VkSampler> sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, bool is_nearest);
@@ -59,31 +62,26 @@ class GpuTextures {
 
 constexpr float max_anisotropy = 8;
 
-std::set<TextureKey> used_textures(const scene::Assets& assets) {
-    std::set<TextureKey> keys;
-    for (std::uint32_t model = 0; model < assets.models.size(); ++model) {
-        for (const scene::ModelMaterial& material : assets.models[model].materials) {
-            for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(material))
-                keys.insert({model, texture->image, is_srgb ? Transfer::Srgb : Transfer::Linear});
-        }
-    }
-    for (std::uint32_t image = 0; image < assets.images.size(); ++image)
-        keys.insert({scene::no_index, image, Transfer::Srgb});
-    return keys;
+/// Sprites are cut out as shaders/sprite/sprite_fragment.glsl does it.
+constexpr AlphaUse sprite_alpha{.weighs = true, .cutoff = 0.5F}, particle_alpha{.weighs = true};
+
+/// Of the texture of base colour.
+AlphaUse alpha_use(const scene::SnapshotMaterial& material) {
+    const scene::SurfaceBlend blend = material.surface.blend;
+    if (blend == scene::SurfaceBlend::Alpha || blend == scene::SurfaceBlend::Additive) return {.weighs = true};
+    const float cutoff = texture_cutoff(material);
+    return {.weighs = cutoff > 0, .cutoff = cutoff};
 }
 
-/// For textures that mask a surface: the smallest cutoff of the materials that use it.
-std::map<TextureKey, float> alpha_cutoffs(const scene::Assets& assets) {
-    std::map<TextureKey, float> cutoffs;
-    for (std::uint32_t model = 0; model < assets.models.size(); ++model)
-        for (const scene::ModelMaterial& material : assets.models[model].materials) {
-            if (material.blend != scene::SurfaceBlend::Mask) continue;
-            const TextureKey key{model, material.base_color_texture.image, Transfer::Srgb};
-            const float cutoff = std::max(material.alpha_cutoff, 1.0F / 255);
-            const auto [found, is_new] = cutoffs.emplace(key, cutoff);
-            if (!is_new) found->second = std::min(found->second, cutoff);
-        }
-    return cutoffs;
+TextureKey key_of(const scene::SnapshotMaterial& material, std::size_t number, const scene::TextureUse& use) {
+    TextureKey key{.model = material.model,
+                   .image = use.texture->image,
+                   .transfer = use.is_srgb ? Transfer::Srgb : Transfer::Linear};
+    if (number > 0) return key;
+    if (material.entity_texture != scene::no_index)
+        key = {.image = material.entity_texture, .transfer = Transfer::Srgb};
+    key.alpha = alpha_use(material);
+    return key;
 }
 
 const scene::Image* image_of(const scene::Assets& assets, const TextureKey& key) {
@@ -91,6 +89,39 @@ const scene::Image* image_of(const scene::Assets& assets, const TextureKey& key)
         key.model == scene::no_index ? assets.images : assets.models[key.model].images;
     if (key.image >= images.size() || images[key.image].is_empty()) return nullptr;
     return &images[key.image];
+}
+
+bool has_holes(const scene::Image& image) {
+    const auto any_below = [](const auto& samples, auto opaque) {
+        for (std::size_t i = 3; i < samples.size(); i += 4)
+            if (samples[i] < opaque) return true;
+        return false;
+    };
+    if (image.kind == scene::ImageKind::Codes8) return any_below(image.rgba, std::uint8_t{255});
+    return any_below(image.wide, image.kind == scene::ImageKind::Halves ? std::uint16_t{0x3c00} : std::uint16_t{65535});
+}
+
+std::set<TextureKey> used_textures(const scene::Assets& assets, std::span<const scene::SnapshotMaterial> materials) {
+    std::set<TextureKey> keys;
+    const auto add = [&](TextureKey key) {
+        const scene::Image* const image = image_of(assets, key);
+        if (image == nullptr) return;
+        if (key.alpha.weighs && !has_holes(*image)) key.alpha = {};
+        keys.insert(key);
+    };
+    const auto add_material = [&](const scene::SnapshotMaterial& material) {
+        std::size_t number = 0;
+        for (const scene::TextureUse& use : scene::textures_of(material.surface)) add(key_of(material, number++, use));
+    };
+    for (const scene::SnapshotMaterial& material : materials) add_material(material);
+    for (std::uint32_t model = 0; model < assets.models.size(); ++model)
+        for (const scene::ModelMaterial& surface : assets.models[model].materials)
+            add_material({.surface = surface, .model = model});
+    for (const scene::EntityAssets& entity : assets.entities)
+        add({.image = entity.sprite_texture, .transfer = Transfer::Srgb, .alpha = sprite_alpha});
+    for (std::uint32_t image = 0; image < assets.images.size(); ++image)
+        add({.image = image, .transfer = Transfer::Srgb, .alpha = particle_alpha});
+    return keys;
 }
 
 VkSamplerAddressMode address_mode(scene::Wrap wrap) {
@@ -119,24 +150,24 @@ bool is_filtered(const gpu::Context& context, VkFormat format) {
     return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
 }
 
-/// A picture's levels; those of 8 bits are without level 0, which is the picture.
+/// A picture's levels; those of 8 bits are without level 0 where that is the picture.
 struct Chain {
     VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
     std::vector<MipLevel> levels;
     std::vector<WideMipLevel> wide;
 };
 
-Chain chain_of(const gpu::Context& context, const scene::Image& image, bool is_srgb, std::optional<float> cutoff) {
+Chain chain_of(const gpu::Context& context, const scene::Image& image, bool is_srgb, AlphaUse alpha) {
     if (image.kind == scene::ImageKind::Codes8)
         return {.format = is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                .levels = mip_levels(image.width, image.height, image.rgba, is_srgb, cutoff),
+                .levels = mip_levels(image.width, image.height, image.rgba, is_srgb, alpha),
                 .wide = {}};
     // Every device filters halves.
     const bool as_codes =
         image.kind == scene::ImageKind::Codes16 && !is_srgb && is_filtered(context, VK_FORMAT_R16G16B16A16_UNORM);
     return {.format = as_codes ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R16G16B16A16_SFLOAT,
             .levels = {},
-            .wide = wide_mip_levels(image, is_srgb, as_codes, cutoff)};
+            .wide = wide_mip_levels(image, is_srgb, as_codes, alpha)};
 }
 
 GpuTextures::~GpuTextures() {
@@ -144,12 +175,12 @@ GpuTextures::~GpuTextures() {
         context_->vk.DestroySampler(context_->device, sampler, context_->allocator);
 }
 
-Result<> GpuTextures::create(const scene::Assets& assets, Uploader& uploader) {
+Result<> GpuTextures::create(const scene::Assets& assets, std::span<const scene::SnapshotMaterial> materials,
+                             Uploader& uploader) {
     DARKROOM_TRY(create_constant({255, 255, 255, 255}, uploader, "white"));
     DARKROOM_TRY(create_constant({128, 128, 255, 255}, uploader, "flat normal"));
-    std::vector<TextureKey> keys;
-    for (const TextureKey& key : used_textures(assets))
-        if (image_of(assets, key) != nullptr) keys.push_back(key);
+    const std::set<TextureKey> used = used_textures(assets, materials);
+    const std::vector<TextureKey> keys(used.begin(), used.end());
     // A few at a time: the chains of a whole scene need not be in memory together.
     const std::size_t group = 2 * std::max(1U, std::thread::hardware_concurrency());
     for (std::size_t first = 0; first < keys.size(); first += group) {
@@ -166,12 +197,9 @@ Result<> GpuTextures::create_constant(std::array<std::uint8_t, 4> rgba, Uploader
 
 Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<const TextureKey> keys,
                                       Uploader& uploader) {
-    const std::map<TextureKey, float> cutoffs = alpha_cutoffs(assets);
     std::vector<Chain> chains(keys.size());
     parallel_for(keys.size(), 0, [&](std::size_t i) {
-        const auto cutoff = cutoffs.find(keys[i]);
-        chains[i] = chain_of(*context_, *image_of(assets, keys[i]), keys[i].transfer == Transfer::Srgb,
-                             cutoff == cutoffs.end() ? std::nullopt : std::optional(cutoff->second));
+        chains[i] = chain_of(*context_, *image_of(assets, keys[i]), keys[i].transfer == Transfer::Srgb, keys[i].alpha);
     });
     const std::uint32_t limit = context_->traits.max_image_dimension;
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -181,9 +209,10 @@ Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<con
         const auto add = [&](std::uint32_t width, std::uint32_t height, std::span<const std::byte> bytes) {
             if (width <= limit && height <= limit) levels.push_back({width, height, bytes});
         };
-        if (!image.rgba.empty()) add(image.width, image.height, std::as_bytes(std::span(image.rgba)));
-        for (const MipLevel& level : chains[i].levels)
-            add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
+        const std::vector<MipLevel>& made = chains[i].levels;
+        const bool has_first = !made.empty() && made[0].width == image.width && made[0].height == image.height;
+        if (!image.rgba.empty() && !has_first) add(image.width, image.height, std::as_bytes(std::span(image.rgba)));
+        for (const MipLevel& level : made) add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
         for (const WideMipLevel& level : chains[i].wide)
             add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
         numbers_.emplace(keys[i], images_.size());
@@ -193,8 +222,11 @@ Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<con
 }
 
 std::size_t GpuTextures::find(const TextureKey& key, std::size_t otherwise) const {
-    const auto found = numbers_.find(key);
-    return found == numbers_.end() ? otherwise : found->second;
+    auto found = numbers_.find(key);
+    if (found == numbers_.end()) found = numbers_.lower_bound({key.model, key.image, key.transfer, {}});
+    const bool is_it = found != numbers_.end() && found->first.model == key.model && found->first.image == key.image &&
+                       found->first.transfer == key.transfer;
+    return is_it ? found->second : otherwise;
 }
 
 Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, bool is_nearest) {
@@ -219,6 +251,16 @@ Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, b
     samplers_.emplace(key, sampler);
     return sampler;
 }
+
+}  // namespace
+
+float texture_cutoff(const scene::SnapshotMaterial& material) {
+    const float factor = material.surface.base_color.w * material.opacity, cutoff = material.surface.alpha_cutoff;
+    const bool is_cut_out = material.surface.blend == scene::SurfaceBlend::Mask && cutoff > 0 && cutoff <= factor;
+    return is_cut_out ? cutoff / factor : 0;
+}
+
+namespace {
 
 using scene::no_index;
 using scene::vec2;
@@ -381,7 +423,8 @@ Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkD
     return made;
 }
 
-Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& assets) {
+Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& assets,
+                                  std::span<const scene::SnapshotMaterial> materials) {
     GpuScene out;
     out.state_ = std::make_shared<State>(context);
     std::array<gpu::SetLayout::Binding, scene::material_textures> bindings{};
@@ -410,7 +453,7 @@ Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& as
     for (const Part& part : parts) {
         DARKROOM_TRY_VALUE(part.buffer, uploader.buffer(part.bytes, part.usage, part.least_size, part.name));
     }
-    DARKROOM_TRY(out.state_->textures.create(assets, uploader));
+    DARKROOM_TRY(out.state_->textures.create(assets, materials, uploader));
     DARKROOM_TRY(uploader.flush());
     return out;
 }
@@ -447,20 +490,19 @@ void GpuScene::draw_box_edges(VkCommandBuffer commands, std::uint32_t first_inst
 
 Result<VkDescriptorSet> GpuScene::textures(const scene::SnapshotMaterial& material) {
     std::vector<State::Slot> slots;
-    for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(material.surface)) {
-        TextureKey key{material.model, texture->image, is_srgb ? Transfer::Srgb : Transfer::Linear};
-        if (slots.empty() && material.entity_texture != no_index)
-            key = {no_index, material.entity_texture, Transfer::Srgb};
+    for (const scene::TextureUse& use : scene::textures_of(material.surface)) {
         DARKROOM_TRY_VALUE(State::Slot slot,
-                           state_->slot(*texture, key, is_normal ? GpuTextures::flat_normal : GpuTextures::white));
+                           state_->slot(*use.texture, key_of(material, slots.size(), use),
+                                        use.is_normal ? GpuTextures::flat_normal : GpuTextures::white));
         slots.push_back(slot);
     }
     return state_->set(slots, material_layout.handle);
 }
 
-Result<VkDescriptorSet> GpuScene::texture(std::uint32_t image) {
+Result<VkDescriptorSet> GpuScene::texture(std::uint32_t image, bool is_cut_out) {
     const scene::Texture clamped{.wrap_u = scene::Wrap::Clamp, .wrap_v = scene::Wrap::Clamp};
-    DARKROOM_TRY_VALUE(State::Slot slot, state_->slot(clamped, {no_index, image, Transfer::Srgb}, GpuTextures::white));
+    const TextureKey key{no_index, image, Transfer::Srgb, is_cut_out ? sprite_alpha : particle_alpha};
+    DARKROOM_TRY_VALUE(State::Slot slot, state_->slot(clamped, key, GpuTextures::white));
     return state_->set({slot}, billboard_layout.handle);
 }
 

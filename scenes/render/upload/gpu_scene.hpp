@@ -4,6 +4,7 @@
 // descriptor set for each combination of textures. Uploaded once, through staging memory, in one submission.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "draw/pipeline.hpp"
@@ -32,9 +33,14 @@ struct MeshInput {
 };
 [[nodiscard]] MeshInput mesh_input(bool is_skinned, VkVertexInputRate rate = VK_VERTEX_INPUT_RATE_VERTEX);
 
+/// What alpha of a material's texture is cut out below, before factors lower it; 0: all is kept, or nothing.
+[[nodiscard]] float texture_cutoff(const scene::SnapshotMaterial& material);
+
 class GpuScene {
   public:
-    [[nodiscard]] static Result<GpuScene> create(gpu::Context& context, const scene::Assets& assets);
+    /// `materials`: those that will be drawn beside the models' own, as entities change them.
+    [[nodiscard]] static Result<GpuScene> create(gpu::Context& context, const scene::Assets& assets,
+                                                 std::span<const scene::SnapshotMaterial> materials = {});
 
     [[nodiscard]] const GpuMesh& mesh(const scene::MeshId& id) const;
     /// Binds the mesh's vertices (its first is vertex 0 of the shader) and, where it has them, its skin.
@@ -48,8 +54,9 @@ class GpuScene {
     /// Set 1 of mesh pipelines: textures in the order of scene::textures_of(); what is not given is white (normals:
     /// flat). The same set for materials that share textures.
     [[nodiscard]] Result<VkDescriptorSet> textures(const scene::SnapshotMaterial& material);
-    /// Set 1 of billboards: one texture, by its number in Assets::images; no_index: white.
-    [[nodiscard]] Result<VkDescriptorSet> texture(std::uint32_t image);
+    /// Set 1 of billboards: one texture, by its number in Assets::images; no_index: white. Sprites are cut out of it,
+    /// particles blended.
+    [[nodiscard]] Result<VkDescriptorSet> texture(std::uint32_t image, bool is_cut_out);
 
     gpu::SetLayout material_layout;                      ///< all textures of a material
     gpu::SetLayout billboard_layout;                     ///< one

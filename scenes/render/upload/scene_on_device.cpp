@@ -7,11 +7,11 @@ Result<std::shared_ptr<SceneOnDevice>> SceneOnDevice::create(gpu::Context& conte
                                                              const scene::Assets& assets) {
     const auto out = std::make_shared<SceneOnDevice>();
     DARKROOM_TRY_VALUE(out->frame_layout, create_frame_layout(context));
-    DARKROOM_TRY_VALUE(out->meshes, GpuScene::create(context, assets));
+    out->first = scene::snapshot(scene, assets, {});
+    DARKROOM_TRY_VALUE(out->meshes, GpuScene::create(context, assets, out->first.materials));
     DARKROOM_TRY_VALUE(out->environment, GpuEnvironment::create(context, assets.skybox));
     out->surroundings = scene.environment;
     out->has_alpha_layer = scene.has_alpha_layer;
-    out->first = scene::snapshot(scene, assets, {});
     return out;
 }
 

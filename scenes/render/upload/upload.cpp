@@ -141,9 +141,9 @@ struct LinearLevel {
     std::vector<float> values;
 };
 
-/// `source(index)`: the linear number at that place.
+/// `source(index)`: the linear number at that place. Where nothing is seen, the mean is that of all colours.
 template <class Source>
-LinearLevel halved(std::uint32_t width, std::uint32_t height, const Source& source) {
+LinearLevel halved(std::uint32_t width, std::uint32_t height, const Source& source, bool alpha_weighs) {
     LinearLevel out{.width = std::max(width / 2, 1U), .height = std::max(height / 2, 1U), .values = {}};
     out.values.resize(std::size_t{out.width} * out.height * 4);
     float* value = out.values.data();
@@ -151,35 +151,120 @@ LinearLevel halved(std::uint32_t width, std::uint32_t height, const Source& sour
         const Taps down = taps_of(y, height);
         for (std::uint32_t x = 0; x < out.width; ++x, value += 4) {
             const Taps across = taps_of(x, width);
+            std::array<float, 3> seen{};
             for (std::uint32_t j = 0; j < down.count; ++j) {
                 for (std::uint32_t i = 0; i < across.count; ++i) {
                     const std::size_t place = (std::size_t{down.first + j} * width + across.first + i) * 4;
                     const float weight = down.weights[j] * across.weights[i];
                     for (std::size_t channel = 0; channel < 4; ++channel)
                         value[channel] += weight * source(place + channel);
+                    if (!alpha_weighs) continue;
+                    const float shown = weight * source(place + 3);
+                    for (std::size_t channel = 0; channel < 3; ++channel)
+                        seen[channel] += shown * source(place + channel);
                 }
             }
+            if (!alpha_weighs || !(value[3] > 0)) continue;
+            for (std::size_t channel = 0; channel < 3; ++channel) value[channel] = seen[channel] / value[3];
         }
     }
     return out;
 }
 
-/// Share of the pixels whose alpha, scaled, reaches the cutoff.
-float coverage(const LinearLevel& level, float cutoff, float scale) {
-    std::size_t covered = 0;
-    for (std::size_t i = 3; i < level.values.size(); i += 4) covered += level.values[i] * scale >= cutoff ? 1 : 0;
-    return static_cast<float>(covered) / static_cast<float>(level.values.size() / 4);
+/// The colour of what is seen beside a pixel that is not, or where nothing is, of the level below.
+template <class Source>
+std::array<float, 3> color_beside(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
+                                  const Source& source, const LinearLevel& below) {
+    std::array<float, 3> sum{};
+    float total = 0;
+    for (std::uint32_t row = y - (y > 0 ? 1U : 0U); row <= std::min(y + 1, height - 1); ++row) {
+        for (std::uint32_t column = x - (x > 0 ? 1U : 0U); column <= std::min(x + 1, width - 1); ++column) {
+            const std::size_t place = (std::size_t{row} * width + column) * 4;
+            const float alpha = source(place + 3);
+            total += alpha;
+            for (std::size_t channel = 0; channel < 3; ++channel) sum[channel] += alpha * source(place + channel);
+        }
+    }
+    if (total > 0) return {sum[0] / total, sum[1] / total, sum[2] / total};
+    const std::size_t row = std::min(y / 2, below.height - 1), column = std::min(x / 2, below.width - 1);
+    const float* const color = below.values.data() + (row * below.width + column) * 4;
+    return {color[0], color[1], color[2]};
 }
 
-/// By halving: the largest scale at which no more than this share is covered, or where there is none, none is.
-void scale_alpha(LinearLevel& level, float cutoff, float wanted) {
-    float low = 0, high = 8;
-    for (int i = 0; i < 16; ++i) {
-        const float middle = (low + high) / 2;
-        (coverage(level, cutoff, middle) > wanted ? high : low) = middle;
+/// Calls `write(index, colour)` for every pixel whose alpha is 0.
+template <class Source, class Write>
+void fill_unseen(std::uint32_t width, std::uint32_t height, const Source& source, const LinearLevel& below,
+                 const Write& write) {
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::size_t place = (std::size_t{y} * width + x) * 4;
+            if (!(source(place + 3) > 0)) write(place, color_beside(x, y, width, height, source, below));
+        }
     }
-    // Of the two sides of the step the one that is nearer.
-    const float scale = wanted - coverage(level, cutoff, low) < coverage(level, cutoff, high) - wanted ? low : high;
+}
+
+/// Alpha as a sampler filters it, at a place in pixels, whose centres are at halves. The picture repeats.
+template <class Source>
+float filtered_alpha(std::uint32_t width, std::uint32_t height, const Source& source, float x, float y) {
+    const float left = std::floor(x - 0.5F), top = std::floor(y - 0.5F);
+    const float across = x - 0.5F - left, down = y - 0.5F - top;
+    const std::size_t column = (static_cast<std::size_t>(left + 1) + width - 1) % width, right = (column + 1) % width;
+    const std::size_t row = (static_cast<std::size_t>(top + 1) + height - 1) % height, below = (row + 1) % height;
+    const auto alpha = [&](std::size_t i, std::size_t j) { return source((j * width + i) * 4 + 3); };
+    const float upper = std::lerp(alpha(column, row), alpha(right, row), across);
+    return std::lerp(upper, std::lerp(alpha(column, below), alpha(right, below), across), down);
+}
+
+/// Calls `visit(x, y)` with sixteen places in each pixel, of large pictures in some of them.
+template <class Visit>
+void each_place(std::uint32_t width, std::uint32_t height, const Visit& visit) {
+    constexpr std::size_t max_pixels = 1U << 14U;
+    const std::size_t count = std::size_t{width} * height;
+    // Odd, so that it walks through all columns.
+    const std::size_t step = count <= max_pixels ? 1 : (count / max_pixels) | 1U;
+    for (std::size_t pixel = 0; pixel < count; pixel += step)
+        for (std::size_t i = 0; i < 16; ++i)
+            visit(static_cast<float>(pixel % width) + (static_cast<float>(i % 4) + 0.5F) / 4,
+                  static_cast<float>(pixel / width) + (static_cast<float>(i / 4) + 0.5F) / 4);
+}
+
+template <class Source>
+float covered_share(std::uint32_t width, std::uint32_t height, const Source& source, float cutoff) {
+    std::size_t covered = 0, places = 0;
+    each_place(width, height, [&](float x, float y) {
+        covered += filtered_alpha(width, height, source, x, y) >= cutoff ? 1 : 0;
+        ++places;
+    });
+    return static_cast<float>(covered) / static_cast<float>(places);
+}
+
+/// By halving what alpha is compared with: the scale at which the share that is covered is the nearest. A sampler mixes
+/// the level with the one before it, `finer(x, y)`, with its sides from 0 to 1: the share is the mean of mixtures, each
+/// of which has less contrast than both.
+template <class Finer>
+void scale_alpha(LinearLevel& level, float cutoff, float wanted, const Finer& finer) {
+    constexpr int mixtures = 4;
+    std::vector<float> before;
+    each_place(level.width, level.height, [&](float x, float y) {
+        before.push_back(finer(x / static_cast<float>(level.width), y / static_cast<float>(level.height)));
+    });
+    const auto share = [&](float threshold) {
+        const float scale = cutoff / threshold;
+        const auto scaled = [&](std::size_t place) { return std::min(level.values[place] * scale, 1.0F); };
+        std::size_t covered = 0, place = 0;
+        each_place(level.width, level.height, [&](float x, float y) {
+            const float own = filtered_alpha(level.width, level.height, scaled, x, y), other = before[place++];
+            for (int i = 1; i <= mixtures; ++i)
+                covered += std::lerp(other, own, static_cast<float>(i) / mixtures) >= cutoff ? 1 : 0;
+        });
+        return static_cast<float>(covered) / static_cast<float>(mixtures * before.size());
+    };
+    float low = 1e-4F, high = 1;
+    for (int i = 0; i < 14; ++i) {
+        const float middle = (low + high) / 2;
+        (share(middle) > wanted ? low : high) = middle;
+    }
+    const float scale = cutoff / (share(low) - wanted < wanted - share(high) ? low : high);
     for (std::size_t i = 3; i < level.values.size(); i += 4) level.values[i] = std::min(level.values[i] * scale, 1.0F);
 }
 
@@ -219,56 +304,86 @@ WideMipLevel wide(const LinearLevel& level, bool as_codes) {
     return out;
 }
 
-/// Calls `keep(level)` with levels 1, 2, ... of what `source` gives.
-template <class Source, class Keep>
-void each_level(std::uint32_t width, std::uint32_t height, const Source& source, std::optional<float> alpha_cutoff,
-                const Keep& keep) {
+/// Calls `keep(level)` with levels 1, 2, ... of what `source` gives, and `fill(level 1)` before where alpha weighs.
+template <class Source, class Keep, class Fill>
+void each_level(std::uint32_t width, std::uint32_t height, const Source& source, AlphaUse alpha, const Keep& keep,
+                const Fill& fill) {
     if (width <= 1 && height <= 1) return;
-    const std::size_t count = std::size_t{width} * height * 4;
-    std::size_t covered = 0;
-    if (alpha_cutoff)
-        for (std::size_t i = 3; i < count; i += 4) covered += source(i) >= *alpha_cutoff ? 1 : 0;
-    const float wanted = static_cast<float>(covered) / static_cast<float>(count / 4);
-    LinearLevel level = halved(width, height, source);
-    while (true) {
-        if (alpha_cutoff) {
-            // The next level is made of what is measured, not of what was scaled.
-            LinearLevel scaled = level;
-            scale_alpha(scaled, *alpha_cutoff, wanted);
-            keep(scaled);
-        } else {
-            keep(level);
-        }
-        if (level.width == 1 && level.height == 1) return;
-        level = halved(level.width, level.height, [&](std::size_t place) { return level.values[place]; });
+    std::vector<LinearLevel> levels;
+    levels.push_back(halved(width, height, source, alpha.weighs));
+    while (levels.back().width > 1 || levels.back().height > 1) {
+        if (!alpha.weighs) keep(levels.back());
+        const LinearLevel& last = levels.back();
+        LinearLevel next = halved(
+            last.width, last.height, [&](std::size_t place) { return last.values[place]; }, alpha.weighs);
+        // Only what is filled needs all levels at once.
+        if (!alpha.weighs) levels.clear();
+        levels.push_back(std::move(next));
     }
+    if (!alpha.weighs) return keep(levels.back());
+    for (std::size_t i = levels.size() - 1; i-- > 0;) {
+        LinearLevel& level = levels[i];
+        const auto put = [&](std::size_t place, const std::array<float, 3>& color) {
+            std::ranges::copy(color, level.values.begin() + static_cast<std::ptrdiff_t>(place));
+        };
+        fill_unseen(
+            level.width, level.height, [&](std::size_t place) { return level.values[place]; }, levels[i + 1], put);
+    }
+    fill(levels.front());
+    // What is scaled is made of what is measured, not of what was scaled.
+    const float wanted = alpha.cutoff > 0 ? covered_share(width, height, source, alpha.cutoff) : 0;
+    for (std::size_t i = 0; alpha.cutoff > 0 && i < levels.size(); ++i)
+        scale_alpha(levels[i], alpha.cutoff, wanted, [&](float x, float y) {
+            if (i == 0)
+                return filtered_alpha(width, height, source, x * static_cast<float>(width),
+                                      y * static_cast<float>(height));
+            const LinearLevel& before = levels[i - 1];
+            return filtered_alpha(
+                before.width, before.height, [&](std::size_t place) { return before.values[place]; },
+                x * static_cast<float>(before.width), y * static_cast<float>(before.height));
+        });
+    for (const LinearLevel& level : levels) keep(level);
 }
 
 }  // namespace
 
 std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba,
-                                 bool is_srgb, std::optional<float> alpha_cutoff) {
+                                 bool is_srgb, AlphaUse alpha) {
     std::vector<MipLevel> levels;
-    const std::array<float, 256>& color = decoded_bytes(is_srgb);
-    const std::array<float, 256>& alpha = decoded_bytes(false);
+    const std::array<float, 256>& colors = decoded_bytes(is_srgb);
+    const std::array<float, 256>& alphas = decoded_bytes(false);
+    const auto source = [&](std::size_t place) { return (place % 4 == 3 ? alphas : colors)[rgba[place]]; };
     each_level(
-        width, height, [&](std::size_t place) { return place % 4 == 3 ? alpha[rgba[place]] : color[rgba[place]]; },
-        alpha_cutoff, [&](const LinearLevel& level) { levels.push_back(encoded(level, is_srgb)); });
+        width, height, source, alpha, [&](const LinearLevel& level) { levels.push_back(encoded(level, is_srgb)); },
+        [&](const LinearLevel& below) {
+            levels.push_back({.width = width, .height = height, .rgba = {rgba.begin(), rgba.end()}});
+            fill_unseen(width, height, source, below, [&](std::size_t place, const std::array<float, 3>& color) {
+                for (std::size_t i = 0; i < 3; ++i)
+                    levels[0].rgba[place + i] = is_srgb ? encoded_byte(color[i]) : to_byte(color[i]);
+            });
+        });
     return levels;
 }
 
-std::vector<WideMipLevel> wide_mip_levels(const scene::Image& image, bool is_srgb, bool as_codes,
-                                          std::optional<float> alpha_cutoff) {
+std::vector<WideMipLevel> wide_mip_levels(const scene::Image& image, bool is_srgb, bool as_codes, AlphaUse alpha) {
     static const std::vector<float> srgb = decoded_codes(true), linear = decoded_codes(false), half = decoded_halves();
     const bool has_codes = image.kind == scene::ImageKind::Codes16;
-    const std::vector<float>& alpha = has_codes ? linear : half;
-    const std::vector<float>& color = has_codes && is_srgb ? srgb : alpha;
-    const auto source = [&](std::size_t place) { return (place % 4 == 3 ? alpha : color)[image.wide[place]]; };
+    const std::vector<float>& alphas = has_codes ? linear : half;
+    const std::vector<float>& colors = has_codes && is_srgb ? srgb : alphas;
+    const auto source = [&](std::size_t place) { return (place % 4 == 3 ? alphas : colors)[image.wide[place]]; };
     std::vector<WideMipLevel> levels{{.width = image.width, .height = image.height, .rgba = {}}};
     levels[0].rgba.reserve(image.wide.size());
     for (std::size_t i = 0; i < image.wide.size(); ++i) levels[0].rgba.push_back(wide_sample(source(i), as_codes));
-    each_level(image.width, image.height, source, alpha_cutoff,
-               [&](const LinearLevel& level) { levels.push_back(wide(level, as_codes)); });
+    each_level(
+        image.width, image.height, source, alpha,
+        [&](const LinearLevel& level) { levels.push_back(wide(level, as_codes)); },
+        [&](const LinearLevel& below) {
+            fill_unseen(image.width, image.height, source, below,
+                        [&](std::size_t place, const std::array<float, 3>& color) {
+                            for (std::size_t i = 0; i < 3; ++i)
+                                levels[0].rgba[place + i] = wide_sample(color[i], as_codes);
+                        });
+        });
     return levels;
 }
 

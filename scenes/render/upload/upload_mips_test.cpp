@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -55,37 +56,79 @@ TEST(RenderMips, OddSizesKeepTheMean) {
     }
 }
 
-TEST(RenderMips, MaskedTexturesKeepTheirCoverage) {
-    // One pixel in five, here and there: a mean alpha of 0.2, which reaches the cutoff nowhere after two levels.
+/// Alpha where a sampler filters it; `x` and `y` from 0 to 1.
+double filtered(const MipLevel& level, double x, double y) {
+    const double column = x * level.width - 0.5 + level.width, row = y * level.height - 0.5 + level.height;
+    const auto alpha = [&](int i, int j) {
+        const auto u = static_cast<std::uint32_t>(column + i) % level.width;
+        const auto v = static_cast<std::uint32_t>(row + j) % level.height;
+        return level.rgba[(std::size_t{v} * level.width + u) * 4 + 3] / 255.0;
+    };
+    const double across = column - std::floor(column), down = row - std::floor(row);
+    return std::lerp(std::lerp(alpha(0, 0), alpha(1, 0), across), std::lerp(alpha(0, 1), alpha(1, 1), across), down);
+}
+
+/// Share that reaches the cutoff at distances from that of one level to that of the next, evenly.
+double covered(const MipLevel& finer, const MipLevel& level, double cutoff) {
+    constexpr int side = 301;
+    int count = 0;
+    for (int i = 0; i < side * side; ++i) {
+        const double x = (i % side + 0.5) / side, y = (i / side + 0.5) / side;
+        const double near = filtered(finer, x, y), far = filtered(level, x, y);
+        for (const double mixture : {0.1, 0.3, 0.5, 0.7, 0.9}) count += std::lerp(near, far, mixture) >= cutoff;
+    }
+    return count / (5.0 * side * side);
+}
+
+TEST(RenderMips, WhatIsCutOutKeepsItsCoverage) {
+    // One pixel in five, here and there: a mean alpha of 0.2, which reaches the cutoff nowhere after two levels. A leaf
+    // with a smooth edge. A hedge, most of which is left.
     const auto grass = picture(80, 64, [](std::uint32_t x, std::uint32_t y) {
         return (x * 2654435761U ^ y * 2246822519U) % 1021 % 5 == 0 ? 255 : 0;
     });
-    constexpr float cutoff = 0.5F;
-    const auto covered = [](const MipLevel& level) {
-        std::size_t count = 0;
-        for (std::size_t i = 3; i < level.rgba.size(); i += 4) count += level.rgba[i] >= 128 ? 1 : 0;
-        return static_cast<double>(count) / (level.width * level.height);
-    };
-    const std::vector<MipLevel> plain = mip_levels(80, 64, grass, true), kept = mip_levels(80, 64, grass, true, cutoff);
-    ASSERT_EQ(kept.size(), plain.size());
-    EXPECT_LT(covered(plain[2]), 0.02);
-    // Of few alphas that there are one is the nearest.
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(covered(kept[i]), 0.2, 0.06) << i;
-    // A smooth edge has a pixel for every share.
-    const auto leaf = picture(64, 64, [](std::uint32_t x, std::uint32_t y) {
+    const auto leaf = picture(80, 64, [](std::uint32_t x, std::uint32_t y) {
         return std::clamp(255 - 7 * std::hypot(x - 31.5, y - 31.5) + 64 * ((x + y) % 2), 0.0, 255.0);
     });
-    std::size_t first = 0;
-    for (std::size_t i = 3; i < leaf.size(); i += 4) first += leaf[i] >= 128 ? 1 : 0;
-    const std::vector<MipLevel> leaves = mip_levels(64, 64, leaf, true, cutoff);
-    for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR(covered(leaves[i]), static_cast<double>(first) / (64 * 64), 0.07) << i;
-    // Colour is left alone.
-    const std::vector<MipLevel> unscaled = mip_levels(64, 64, leaf, true);
-    for (std::size_t i = 0; i < leaves[0].rgba.size(); ++i) {
-        if (i % 4 != 3) {
-            ASSERT_EQ(leaves[0].rgba[i], unscaled[0].rgba[i]);
+    const auto hedge = picture(80, 64, [](std::uint32_t x, std::uint32_t y) {
+        return (x * 2654435761U ^ y * 2246822519U) % 1021 % 5 == 0 ? 0 : 255;
+    });
+    for (const std::vector<std::uint8_t>& rgba : {grass, leaf, hedge})
+        for (const float cutoff : {0.1F, 0.5F, 0.8F}) {
+            const std::vector<MipLevel> levels = mip_levels(80, 64, rgba, true, {.weighs = true, .cutoff = cutoff});
+            ASSERT_EQ(levels[0].width, 80U);
+            const double wanted = covered(levels[0], levels[0], cutoff);
+            for (std::size_t i = 1; i < 4; ++i)
+                // At low cutoffs a code of 8 bits is a share of some 0.04: alphas of small levels differ by few.
+                EXPECT_NEAR(covered(levels[i - 1], levels[i], cutoff), wanted, 0.05) << i << ", cutoff " << cutoff;
         }
+    const MipLevel third = mip_levels(80, 64, grass, true)[2];
+    EXPECT_LT(covered(third, third, 0.5), 0.02) << "else it is gone";
+}
+
+// Red leaves over holes that are black, white or green: in no level is there any of what is not seen.
+TEST(RenderMips, ColourUnderHolesIsThatOfWhatIsSeen) {
+    for (const std::array<std::uint8_t, 3>& under : {std::array<std::uint8_t, 3>{}, {255, 255, 255}, {0, 255, 0}}) {
+        std::vector<std::uint8_t> rgba;
+        for (std::uint32_t i = 0; i < 37 * 24; ++i) {
+            const bool is_leaf = i % 37 < 9 && i / 37 % 5 < 2;
+            const std::array<std::uint8_t, 3> color = is_leaf ? std::array<std::uint8_t, 3>{200, 30, 10} : under;
+            rgba.insert(rgba.end(), color.begin(), color.end());
+            rgba.push_back(is_leaf ? 255 : 0);
+        }
+        const std::vector<MipLevel> levels = mip_levels(37, 24, rgba, true, {.weighs = true});
+        ASSERT_EQ(levels.size(), 6U);
+        for (const MipLevel& level : levels)
+            for (std::size_t i = 0; i < level.rgba.size(); i += 4) {
+                ASSERT_NEAR(level.rgba[i], 200, 1) << level.width;
+                ASSERT_NEAR(level.rgba[i + 1], 30, 1);
+                ASSERT_NEAR(level.rgba[i + 2], 10, 1);
+            }
+        // Where alpha is no cover, colour is what it is.
+        EXPECT_NE(mip_levels(37, 24, rgba, true).back().rgba[0], 200);
+        scene::Image wide{.width = 37, .height = 24, .kind = scene::ImageKind::Codes16};
+        for (const std::uint8_t code : rgba) wide.wide.push_back(static_cast<std::uint16_t>(code * 257));
+        for (const WideMipLevel& level : wide_mip_levels(wide, false, true, {.weighs = true}))
+            for (std::size_t i = 0; i < level.rgba.size(); i += 4) ASSERT_NEAR(level.rgba[i], 200 * 257, 2);
     }
 }
 

@@ -46,7 +46,7 @@ BoxSurface box_surface(const Scene& scene, const Assets& assets, std::uint32_t e
     surface.metallic = given.metallic.value_or(surface.metallic);
     surface.roughness = given.roughness.value_or(surface.roughness);
     surface.emissive = given.emissive.value_or(vec3(0)) * given.emissive_strength;
-    surface.alpha_cutoff = given.alpha_cutoff;
+    surface.alpha_cutoff = given.alpha_cutoff.value_or(surface.alpha_cutoff);
     apply_blend(given, given.opacity < 1 || surface.base_color.w < 1, surface);
     out.material.opacity = given.opacity;
     out.material.writes = given.writes;
@@ -71,7 +71,7 @@ SnapshotMaterial model_surface(const Scene& scene, const Assets& assets, std::ui
     surface.metallic = given.metallic.value_or(surface.metallic);
     surface.roughness = given.roughness.value_or(surface.roughness);
     surface.emissive = given.emissive.value_or(surface.emissive) * given.emissive_strength;
-    if (given.alpha_cutoff != Material{}.alpha_cutoff) surface.alpha_cutoff = given.alpha_cutoff;
+    surface.alpha_cutoff = given.alpha_cutoff.value_or(surface.alpha_cutoff);
     apply_blend(given, given.opacity < 1 || tint.alpha.value_or(1.0F) < 1, surface);
     out.opacity = given.opacity;
     out.writes = given.writes;

@@ -254,6 +254,20 @@ TEST(SceneSnapshot, AClipThatJumpsToItsBeginningMovesNothingThere) {
     EXPECT_NEAR(motion(1.1, 0.95), 0.2F, 1e-5F);
 }
 
+TEST(SceneSnapshot, AnEntityHasItsOwnCutoff) {
+    Assets assets;
+    Model& model = assets.models.emplace_back();
+    model.meshes = {{.primitives = {Primitive{.material = 0}}}};
+    model.materials = {{.blend = SurfaceBlend::Mask, .alpha_cutoff = 0.3F}};
+    model.nodes = {{.mesh = 0}};
+    assets.entities = {{.model = 0}};
+    Scene scene = with_camera({{.name = "hedge", .material = Material{}, .model = ModelReference{}}});
+    const auto cutoff = [&] { return snapshot(scene, assets, {}).materials.at(0).surface.alpha_cutoff; };
+    EXPECT_EQ(cutoff(), 0.3F);
+    scene.entities[0].material->alpha_cutoff = 0.5F;
+    EXPECT_EQ(cutoff(), 0.5F) << "though it is what there is without a model";
+}
+
 TEST(SceneSnapshot, ClipsAreFoundByNameOrNumber) {
     Assets assets;
     Model& model = assets.models.emplace_back();
