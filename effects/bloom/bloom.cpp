@@ -34,8 +34,6 @@ constexpr auto bloom_rows = describe(
     field<&Bloom::reach>("Unit of the glow's width: parts of the picture's height, or pixels."));
 
 constexpr std::uint32_t max_levels_by_pixels = 5;
-/// Height at which a glow by height is that by pixels.
-constexpr double known_height = 1080;
 /// Of levels that are finer than the glow: they are stored as a multiple of the first one, which is not 0.
 constexpr double least_weight = 0.125;
 constexpr float half_max = 65504.0f;
@@ -60,28 +58,29 @@ void prefilter_constants(const void* parameters, const PassContext& context, std
     // The sum of all levels must stay finite in half precision. Of the 2 N - 1 writes on the longest way through the
     // pyramid all but the last may round up by 2^-11, and past 65504 a driver may write an infinity.
     const double most = double{half_max} * (1 - (std::max(levels.count, 1u) - 1) * 0x1p-10);
-    const double first = levels.weights[0], total = std::max(levels.total(), 1.0);
+    const double total = std::max(levels.total(), 1.0);
     if (bloom.mode == BloomMode::Additive)
         out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, static_cast<float>(most / total),
-                  static_cast<float>(std::min(first, 1.0))};
+                  static_cast<float>(bloom_stored_weight(levels))};
     else  // Everything after this pass is linear, so the sum of the weights is divided out here, once.
-        out[0] = {0.0f, 0.0f, static_cast<float>(most), static_cast<float>(first / total)};
+        out[0] = {0.0f, 0.0f, static_cast<float>(most), static_cast<float>(bloom_stored_weight(levels) / total)};
     const bool is_filtered = bloom.firefly_filter && bloom.mode == BloomMode::Additive;
     out[1] = {is_filtered ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
-/// Every level is stored with the first one's weight: what the next one is multiplied by when it is added onto this.
+/// Every level is stored with the same weight: what the next one is multiplied by when it is added onto this.
 float gain_onto(const BloomWeights& levels, std::uint32_t level) {
     if (level + 1 >= std::min(levels.count, BloomWeights::capacity) || levels.weights[level] == 0) return 0.0f;
     return static_cast<float>(levels.weights[level + 1] / levels.weights[level]);
 }
 
-/// (gain onto `level`, levels in use from `base` on, gain onto the level behind `level`).
+/// (gain onto `level`, levels in use from `base` on, gain onto the level behind `level`, tent of the last level).
 template <std::uint32_t level, std::uint32_t base = level>
 void gain_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const BloomWeights levels = bloom_weights(bloom_of(parameters), context.frame_extent);
     out[0] = {gain_onto(levels, level), static_cast<float>(levels.count) - static_cast<float>(base),
-              gain_onto(levels, level + 1), 0.0f};
+              gain_onto(levels, level + 1),
+              static_cast<float>(bloom_last_tent(bloom_of(parameters), context.frame_extent))};
 }
 template <std::uint32_t... i>
 constexpr std::array<ConstantsFunction, sizeof...(i)> gains_of(std::integer_sequence<std::uint32_t, i...>) {
@@ -96,9 +95,13 @@ void end_constants(const void* parameters, const PassContext& context, std::span
     const Bloom& bloom = bloom_of(parameters);
     const bool is_additive = bloom.mode == BloomMode::Additive;
     const BloomWeights levels = bloom_weights(bloom, context.frame_extent);
-    const float weight = is_additive ? bloom.intensity * static_cast<float>(std::max(levels.weights[0], 1.0))
-                                     : std::min(bloom.intensity, 1.0f);
-    out[0] = {levels.count > 0 ? weight : 0.0f, 0.0f, 0.0f, 0.0f};
+    if (levels.count == 0) {
+        out[0] = {0.0f, 1.0f, 0.0f, 0.0f};
+        return;
+    }
+    const float share = is_additive ? bloom.intensity : std::min(bloom.intensity, 1.0f);
+    out[0] = {share * static_cast<float>(levels.weights[0] / bloom_stored_weight(levels)),
+              is_additive ? 1.0f : 1.0f - share, 0.0f, 0.0f};
 }
 
 /// Frames may be smaller than the largest one that the pyramid was made for.
@@ -255,7 +258,7 @@ BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent) {
     BloomWeights out{.count = std::min(bloom_level_count(extent), static_cast<std::uint32_t>(bloom.levels))};
     double finer = 0;  // octaves by which the first level here is wider than that of a picture of the known height
     if (bloom.reach == Reach::Height && out.count > 0) {
-        finer = std::log2(known_height / extent.height);
+        finer = std::log2(bloom_known_height / extent.height);
         const auto needed = static_cast<std::uint32_t>(std::ceil(std::max(levels - finer, 1.0) - 1e-9));
         out.count = std::min({needed, levels_of_size(extent), BloomWeights::capacity});
     }
@@ -263,10 +266,21 @@ BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent) {
     const auto octaves = [&](double a, double b) {
         return share == 1 ? b - a : (std::pow(share, a) - std::pow(share, b)) / (1 - share);
     };
+    double lent = 0;  // what finer levels count that the glow has not
     for (std::uint32_t i = 0; i < out.count; ++i) {
         const double from = i == 0 ? 0 : std::clamp(i + finer, 0.0, levels),
                      to = std::clamp(i + 1 + finer, 0.0, levels);
-        out.weights[i] = std::max(octaves(from, to), i + finer < 0 ? least_weight : 0.0);
+        const double own = octaves(from, to) - lent;
+        out.weights[i] = std::max(own, i + finer < 0 ? least_weight : 0.0);
+        lent = out.weights[i] - own;
+    }
+    // The last level is wider than the part of an octave that it stands for, even where it is brought up more sharply
+    // (bloom_last_tent()): so it gives some of its light to the one before.
+    const double part = bloom_last_part(bloom, extent);
+    if (out.count > 1 && part < 1) {
+        const double given = out.weights[out.count - 1] * 0.45 * (1 - part) * (1 - part);
+        out.weights[out.count - 1] -= given;
+        out.weights[out.count - 2] += given;
     }
     return out;
 }

@@ -89,7 +89,8 @@ vec4 shade(Pixel pixel) {
 }
 
 #part upsample
-// Level i+1 onto level i, added, a kernel of a pixel: the tent of bloom_texels.glsl, by 16 texels. custom[0].x = gain.
+// Level i+1 onto level i, added, a kernel of a pixel: the tent of bloom_texels.glsl, by 16 texels.
+// custom[0] = (gain, levels in use from here on, not used, tent of the last one).
 
 vec3 bloom_texel(int from, ivec2 texel) {
     return load(bloom_below, texel).rgb;
@@ -104,18 +105,17 @@ vec3 bloom_row(ivec2 first, vec4 weights) {
 vec4 shade(Pixel pixel) {
     vec2 place = bloom_below_at(pixel.texel, size(bloom_below), pixel.size), low = floor(place), f = place - low;
     ivec2 first = ivec2(low) - 1;
-    vec4 x = bloom_weights(f.x);
+    float tent = custom[0].y == 2.0 ? custom[0].w : 1.0;
+    vec4 x = bloom_weights(f.x, tent);
     vec3 glow = bloom_weighed(bloom_row(first, x), bloom_row(first + ivec2(0, 1), x), bloom_row(first + ivec2(0, 2), x),
-                              bloom_row(first + ivec2(0, 3), x), bloom_weights(f.y));
+                              bloom_row(first + ivec2(0, 3), x), bloom_weights(f.y, tent));
     return vec4(glow * custom[0].x, 0.0);
 }
 
 #part end
-// scene_linear -> scene_linear. bloom_custom(0).x: the weight of the glow, 0 where there is none.
+// scene_linear -> scene_linear. bloom_custom(0).xy: the weights of the glow, 0 where there is none, and of the picture.
 
 vec4 bloom(vec4 color, Pixel pixel, Bloom parameters) {
     vec3 glow = sample_linear(bloom_pyramid, pixel.uv).rgb;
-    float add = bloom_custom(0).x;
-    float keep = parameters.mode == Bloom_mode_additive ? 1.0 : 1.0 - add;
-    return vec4(color.rgb * keep + glow * add, color.a);
+    return vec4(color.rgb * bloom_custom(0).y + glow * bloom_custom(0).x, color.a);
 }

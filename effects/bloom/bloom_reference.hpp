@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <darkroom/effects/bloom.hpp>
 #include <darkroom/reference.hpp>
@@ -76,9 +77,28 @@ inline ReferenceImage bloom_reference_down(const ReferenceImage& image, bool fir
     return out;
 }
 
-/// `fine` plus `gain` times the coarser level, filtered by the 3x3 tent of bilinear taps one of its texels apart.
-inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& coarse, double gain) {
-    constexpr std::array tent{0.25, 0.5, 0.25};
+/// Height at which a glow by height is that by pixels.
+constexpr double bloom_known_height = 1080;
+
+/// The part of an octave of widths that the last level of a glow by height stands for: 1 at 1080 lines and at any of
+/// their halves and doubles, and where a picture has too few levels.
+inline double bloom_last_part(const Bloom& bloom, VkExtent2D extent) {
+    if (bloom.reach != Reach::Height || extent.height == 0) return 1;
+    const double octaves = bloom.levels - std::log2(bloom_known_height / extent.height);
+    const double before = std::ceil(octaves - 1e-9) - 1;
+    const int sides = std::bit_width(std::min(extent.width, extent.height));
+    return before < 1 || before + 1 > sides - 4 ? 1 : std::min(octaves - before, 1.0);
+}
+
+/// How much of its tent the last level is brought up by, of bilinear taps alone: its glow is as wide as that part.
+inline double bloom_last_tent(const Bloom& bloom, VkExtent2D extent) {
+    return std::pow(std::clamp(2 * bloom_last_part(bloom, extent) - 1, 0.0, 1.0), 1.4);
+}
+
+/// `fine` plus `gain` times the coarser level, filtered by the 3x3 tent of bilinear taps one of its texels apart, or by
+/// a share of it.
+inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& coarse, double gain, double share = 1) {
+    const std::array tent{0.25 * share, 1 - 0.5 * share, 0.25 * share};
     for (std::uint32_t y = 0; y < fine.height; ++y)
         for (std::uint32_t x = 0; x < fine.width; ++x)
             for (int j = -1; j <= 1; ++j)
@@ -91,12 +111,24 @@ inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& c
                 }
 }
 
+/// What the kernels store levels times, at most 1: then the sum that is made in a level's place is at most that of all
+/// levels, and stays as finite.
+inline double bloom_stored_weight(const BloomWeights& levels) {
+    double behind = 0, most = 1;
+    for (std::uint32_t i = levels.count; i-- > 0;) {
+        behind += levels.weights[i];
+        if (behind > 0) most = std::min(most, levels.weights[i] * levels.total() / behind);
+    }
+    return most;
+}
+
 /// Level 0 when all is added up: what the picture is given. There is at least one level.
 inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, const Bloom& bloom,
                                               const BloomWeights& levels) {
     const bool is_additive = bloom.mode == BloomMode::Additive;
     // Whatever halves are rounded to, the sum of all levels stays below 65504.
     const double most = 65504 * (1 - (levels.count - 1) / 1024.0), total = levels.total();
+    const double last_tent = bloom_last_tent(bloom, {source.width, source.height});
     const double limit = is_additive ? most / std::max(total, 1.0) : most;
     std::vector<ReferenceImage> pyramid{bloom_reference_down(source, is_additive && bloom.firefly_filter)};
     for (Rgba& color : pyramid[0].pixels) {
@@ -110,7 +142,8 @@ inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, cons
     for (std::size_t level = levels.count; level-- > 0;) {
         for (Rgba& color : pyramid[level].pixels)
             color = bloom_reference_sum({0, 0, 0, 1}, color, levels.weights[level] / (is_additive ? 1 : total));
-        if (level + 1 < levels.count) bloom_reference_add_up(pyramid[level], pyramid[level + 1], 1);
+        if (level + 1 < levels.count)
+            bloom_reference_add_up(pyramid[level], pyramid[level + 1], 1, level + 2 == levels.count ? last_tent : 1);
     }
     return pyramid[0];
 }

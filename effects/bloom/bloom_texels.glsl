@@ -23,8 +23,10 @@ vec2 bloom_below_at(ivec2 texel, ivec2 below, ivec2 own) {
     return (vec2(texel) + 0.5) * (vec2(below) / vec2(own)) - 0.5;
 }
 
-vec4 bloom_weights(float f) {
-    return 0.25 * vec4(1.0 - f, 2.0 - f, 1.0 + f, f);
+// `tent` is the share of it: at 0 there is one tap, (0, 1-f, f, 0).
+vec4 bloom_weights(float f, float tent) {
+    float aside = 0.25 * tent;
+    return vec4(0.0, 1.0 - f, f, 0.0) + aside * vec4(1.0 - f, 3.0 * f - 2.0, 1.0 - 3.0 * f, f);
 }
 
 vec3 bloom_weighed(vec3 a, vec3 b, vec3 c, vec3 d, vec4 weights) {

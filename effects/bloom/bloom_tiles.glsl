@@ -68,7 +68,9 @@ void bloom_raise(int level, ivec2 first, const int count) {
     ivec2 from = ivec2(low) - 1;
     int width = bloom_tile_of(level + 1).width, origin = bloom_index(level + 1, ivec2(0));
     ivec4 columns = origin + clamp(from.x + ivec4(0, 1, 2, 3), 0, below.x - 1);
-    vec4 x = bloom_weights(place.x - low.x);
+    // The last level may have less than the whole tent.
+    float tent = level + 2 == int(custom[0].y) ? custom[0].w : 1.0;
+    vec4 x = bloom_weights(place.x - low.x, tent);
     vec3 rows[8];
     for (int i = 0; i < count / 2 + 4; ++i) {
         ivec4 at = columns + clamp(from.y + i, 0, below.y - 1) * width;
@@ -80,7 +82,7 @@ void bloom_raise(int level, ivec2 first, const int count) {
         // Two texels are one row of the level below or, where its size was floored, a little less. So the four rows of
         // this texel begin at this one or at the next.
         int next = max((i + 1) / 2 - 1, 0);
-        vec4 w = bloom_weights(y - low_y);
+        vec4 w = bloom_weights(y - low_y, tent);
         bool is_next = int(low_y) - 1 > from.y + next;
         vec4 early = is_next ? vec4(0.0, w.xyz) : w;
         vec3 glow = bloom_weighed(rows[next], rows[next + 1], rows[next + 2], rows[next + 3], early) +
@@ -148,7 +150,7 @@ void run() {
 #part wide
 // Level 2 with all wider levels on it. A workgroup makes 32x32 texels, for which it makes level 3 from level 2, and level 4
 // from level 3, with their neighbours; neither becomes an image. custom[0] = (gain onto level 2, levels in
-// use, gain onto level 3).
+// use, gain onto level 3, tent of the last one).
 
 ivec2 bloom_size(int level) {
     return max(size(bloom_level_2) >> (level - 2), ivec2(1));
@@ -217,8 +219,8 @@ void run() {
 
 #part join
 // The wider levels onto levels 1 and 0. A workgroup makes 64x32 texels of level 0, in their place, for which it makes those
-// of level 1 with their neighbours. custom[0] = (gain onto level 0, not used, gain onto level
-// 1).
+// of level 1 with their neighbours. custom[0] = (gain onto level 0, levels in use, gain onto
+// level 1, tent of the last one).
 
 ivec2 bloom_size(int level) {
     return level == 0 ? size(bloom_level_0) : level == 1 ? size(bloom_level_1) : size(bloom_sum);
