@@ -20,4 +20,7 @@ struct FileColor {
 /// Of a matrix and a curve, or sRGB and Display P3 by their names, since some of them are tables. No profile: nothing.
 [[nodiscard]] FileColor color_of_profile(std::span<const std::byte> profile, bool is_integer = true);
 
+/// Of code values, what EXIF says behind all that the format itself says: Adobe RGB (1998), where that says nothing.
+[[nodiscard]] FileColor with_exif(FileColor found, std::span<const std::byte> exif);
+
 }  // namespace darkroom

@@ -54,6 +54,8 @@ struct FileFormat {
     std::string_view openimageio{};  ///< its name there; empty: it does not read it
     /// Of a checked file of integers or of floats. Null: nothing is said, but by attributes of OpenEXR.
     FileColor (*color)(Bytes file, bool is_integer) = nullptr;
+    /// What the file holds beside the picture that is read, a line: "has 3 pages: the first is read"; empty: nothing.
+    std::string (*left_out)(Bytes file) = nullptr;
     /// How the picture is turned, by EXIF, 1 to 8. Null: by the attribute "Orientation".
     Result<int> (*orientation)(Bytes file, const PictureSource& source) = nullptr;
 

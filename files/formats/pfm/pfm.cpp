@@ -26,6 +26,11 @@ struct PfmHeader {
     std::size_t size = 0;  ///< of the header, in bytes
 };
 
+/// Bytes of them.
+std::uint64_t samples_of(const PfmHeader& header) {
+    return std::uint64_t{4} * header.channels * header.width * header.height;
+}
+
 /// Four words, and a blank behind each; between them comments.
 Result<PfmHeader> read_header(FileFormat::Bytes file) {
     constexpr std::size_t longest = 1000;
@@ -56,12 +61,14 @@ Result<PfmHeader> read_header(FileFormat::Bytes file) {
     if (error != std::errc() || end != words[3].data() + words[3].size() || std::abs(scale) != 1)
         return user_error(fmt::format("a scale of '{}': 1 and -1 are allowed", one_printable_line(words[3])));
     out.is_little_endian = scale < 0;
+    // One blank ends the header, which is two where lines end with both, as the size of the file tells.
+    if (text.substr(at).starts_with("\r\n") && file.size() - out.size == samples_of(out) + 1) ++out.size;
     return out;
 }
 
 Result<std::vector<std::byte>> check_pfm(FileFormat::Bytes file) {
     DARKROOM_TRY_VALUE(const PfmHeader header, read_header(file));
-    const std::uint64_t bytes = std::uint64_t{4} * header.channels * header.width * header.height;
+    const std::uint64_t bytes = samples_of(header);
     if (file.size() - header.size < bytes)
         return user_error(fmt::format("truncated: {} bytes of samples of {}", file.size() - header.size, bytes));
     return std::vector<std::byte>();

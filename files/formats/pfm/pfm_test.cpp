@@ -48,6 +48,19 @@ TEST_F(ImagePfm, BothByteOrdersAreReadFromTheBottomUp) {
     EXPECT_EQ(grey->color.pixels, (std::vector<float>{2, 2, 2, 1, 0.5f, 0.5f, 0.5f, 1}));
 }
 
+// The blank that ends the header is one byte, unless the file has one more than its samples need.
+TEST_F(ImagePfm, LinesMayEndWithCarriageReturns) {
+    const std::string two("\0\0\0\x40", 4), newline_first("\n\0\0\x40", 4);
+    put(file("both.pfm"), "Pf\r\n2 1\r\n-1\r\n" + two + two);
+    put(file("one.pfm"), "Pf\r2 1\r-1\r" + newline_first + two);
+    for (const char* const name : {"both.pfm", "one.pfm"}) {
+        const auto frame = read_frame(file(name));
+        ASSERT_TRUE(frame) << frame.error().text;
+        EXPECT_NEAR(frame->color.pixels[0], 2, 1e-5) << name;
+        EXPECT_EQ(frame->color.pixels[4], 2) << name;
+    }
+}
+
 TEST_F(ImagePfm, WhatIsBrokenIsRefusedInOneLine) {
     const std::string pixel(12, '\0');
     EXPECT_EQ(error_of("PF\n1 1\n-1\n" + pixel), "read");

@@ -26,6 +26,7 @@ const FileFormat& png_format() {
         .open = [](FileFormat::Bytes file, std::size_t) { return open_png(file); },
         .openimageio = "png",
         .color = [](FileFormat::Bytes file, bool) { return png_color(file); },
+        .left_out = png_left_out,
         .samples = png_samples,
         .has_alpha = true,
         .has_color_space = true,

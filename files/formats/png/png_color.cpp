@@ -27,14 +27,16 @@ std::uint32_t number_of(Bytes bytes) {
     return value;
 }
 
-/// The chunks before the pixels, the first of each name.
+/// The chunks before the pixels, and EXIF, which may stand behind them; the first of each name.
 std::map<std::string_view, Bytes> chunks_of(Bytes file) {
     std::map<std::string_view, Bytes> out;
+    bool is_behind = false;
     for (std::size_t position = 8; file.size() >= position + 12;) {
         const std::size_t length = number_of(file.subspan(position));
         const std::string_view type(reinterpret_cast<const char*>(file.data()) + position + 4, 4);
-        if (type == "IDAT" || type == "IEND" || length > file.size() - position - 12) break;
-        out.try_emplace(type, file.subspan(position + 8, length));
+        if (type == "IEND" || length > file.size() - position - 12) break;
+        is_behind = is_behind || type == "IDAT";
+        if (!is_behind || type == "eXIf") out.try_emplace(type, file.subspan(position + 8, length));
         position += length + 12;
     }
     return out;
@@ -153,10 +155,7 @@ std::string light_of(const std::map<std::string_view, Bytes>& chunks) {
                        number_of(levels->subspan(4)) / 1e4);
 }
 
-}  // namespace
-
-FileColor png_color(Bytes file) {
-    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
+FileColor color_by_chunks(const std::map<std::string_view, Bytes>& chunks) {
     const auto codes = chunk_of(chunks, "cICP", 4);
     if (!codes) return color_of_chunks(chunks);
     const auto number = [&](std::size_t i) { return std::to_integer<unsigned>((*codes)[i]); };
@@ -169,6 +168,27 @@ FileColor png_color(Bytes file) {
     if (out.warning.empty())
         out.warning = fmt::format("{} is not read: taken {}", said, out.said.empty() ? "as sRGB" : "by " + out.said);
     return out;
+}
+
+}  // namespace
+
+FileColor png_color(Bytes file) {
+    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
+    const auto exif = chunks.find("eXIf");
+    return with_exif(color_by_chunks(chunks), exif == chunks.end() ? Bytes() : exif->second);
+}
+
+std::string png_left_out(Bytes file) {
+    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
+    const auto animation = chunk_of(chunks, "acTL", 8);
+    const std::uint32_t frames = animation ? number_of(*animation) : 0;
+    // W3C, PNG's third edition, 11.3.6.1: the picture is the animation's first frame where its control stands before
+    // it.
+    if (!chunks.contains("fcTL"))
+        return frames == 0 ? ""
+                           : fmt::format("has an animation of {} frame{} beside its picture: the picture is read",
+                                         frames, frames == 1 ? "" : "s");
+    return frames < 2 ? "" : fmt::format("is an animation of {} frames: the first is read", frames);
 }
 
 }  // namespace darkroom

@@ -92,6 +92,10 @@ Result<RadianceHeader> read_header(FileFormat::Bytes file) {
         if (!line) return user_error("damaged or truncated: its header has no end");
         const std::size_t equals = std::min(line->find('='), line->size());
         const std::string_view name = line->substr(0, equals), value = line->substr(std::min(equals + 1, line->size()));
+        if (name == "FORMAT" && value.find("32-bit_rle_xyze") != std::string_view::npos)
+            return user_error(
+                "its pixels are CIE X, Y and Z (32-bit_rle_xyze): red, green and blue (32-bit_rle_rgbe) "
+                "are read, to which Radiance's `ra_xyze -r` converts");
         if (name == "FORMAT" && value.find("32-bit_rle_rgbe") == std::string_view::npos)
             return user_error(fmt::format("a format of '{}': 32-bit_rle_rgbe is read", one_printable_line(value)));
         if (name != "EXPOSURE" && name != "COLORCORR" && name != "PRIMARIES") continue;

@@ -32,8 +32,12 @@ const FileFormat& tiff_format() {
         .least_bytes = [](const FilePart& part) { return double(part.width) * part.height / 8 / 4096; },
         .open = [](FileFormat::Bytes file, std::size_t) { return open_tiff(file); },
         .openimageio = "tiff",
-        .color = [](FileFormat::Bytes file,
-                    bool is_integer) { return color_of_profile(profile_of_tiff(file), is_integer); },
+        .color =
+            [](FileFormat::Bytes file, bool is_integer) {
+                const FileColor found = color_of_profile(profile_of_tiff(file), is_integer);
+                return is_integer ? with_exif(found, file) : found;
+            },
+        .left_out = left_out_of_tiff,
         .samples = tiff_samples,
         .has_alpha = true,
         .compressions = tiff_compressions,

@@ -18,6 +18,8 @@ namespace {
 
 // TIFF 6.0 (Adobe, 1992), section 8 and the extensions after it; BigTIFF as libtiff has it.
 enum Tag : std::uint32_t {
+    new_subfile_type = 254,
+    subfile_type = 255,
     image_width = 256,
     image_length = 257,
     bits_per_sample = 258,
@@ -33,8 +35,10 @@ enum Tag : std::uint32_t {
     tile_length = 323,
     tile_offsets = 324,
     tile_byte_counts = 325,
+    sub_directories = 330,
     sample_format = 339,
     ycbcr_subsampling = 530,
+    image_depth = 32997,
     icc_profile = 34675,
 };
 
@@ -50,6 +54,8 @@ constexpr std::uint64_t max_tile_side = 8192;
 constexpr std::uint64_t always_tile_bytes = std::uint64_t{1} << 24;
 constexpr std::uint64_t max_tile_bytes = std::uint64_t{1} << 28;
 constexpr std::uint64_t max_tags = 4096;
+// Of all pages together: those behind them are not looked for.
+constexpr std::uint64_t max_tags_of_pages = std::uint64_t{1} << 20;
 constexpr std::uint64_t max_samples = 1024;
 // A decoder reads each strip's bytes, be they those of another, too.
 constexpr std::uint64_t max_uses_of_bytes = 4;
@@ -82,6 +88,16 @@ class TiffChecker {
 
     std::span<const std::byte> profile() { return read_directory() ? profile_ : std::span<const std::byte>(); }
 
+    std::string left_out() {
+        if (!read_directory()) return {};
+        const auto whole = static_cast<std::size_t>(std::ranges::count(pages_, false, &Page::is_smaller));
+        const auto chosen = std::ranges::find(pages_, directory_ - count_bytes(), &Page::place);
+        if (whole < 2 || chosen == pages_.end()) return {};
+        const auto number = chosen - pages_.begin() + 1;
+        return fmt::format("has {}{} pages: {} is read", has_more_pages_ ? "more than " : "", pages_.size(),
+                           number == 1 ? "the first" : fmt::format("page {}", number));
+    }
+
   private:
     [[nodiscard]] std::uint64_t number(std::size_t at, std::size_t size) const {
         std::uint64_t value = 0;
@@ -94,31 +110,110 @@ class TiffChecker {
     }
     // Which is written anew for the decoder.
     [[nodiscard]] bool overlaps_directory(std::uint64_t at, std::uint64_t size) const {
-        return at < tags_end_ + pointer_bytes() && at + size > directory_ - (is_big_tiff_ ? 8 : 2);
+        return at < tags_end_ + pointer_bytes() && at + size > directory_ - count_bytes();
     }
     static Result<> cut_off() { return user_error("truncated: unexpected end of file in the directory"); }
     static Result<> malformed(std::string_view what) { return user_error(fmt::format("malformed header: {}", what)); }
+
+    /// A picture of the file.
+    struct Page {
+        std::uint64_t place = 0;              ///< of its directory
+        std::uint64_t width = 0, height = 0;  ///< 0: it does not say
+        bool is_smaller = false;              ///< a copy of another in fewer pixels
+        bool is_mask = false;                 ///< of another's transparency
+        std::vector<std::uint64_t> inner{};   ///< places of pictures that only it names
+    };
+
+    [[nodiscard]] Entry entry_at(std::size_t at) const {
+        return {.tag = static_cast<std::uint32_t>(number(at, 2)),
+                .type = static_cast<std::uint32_t>(number(at + 2, 2)),
+                .count = number(at + 4, pointer_bytes()),
+                .values = at + 4 + pointer_bytes(),
+                .at = at};
+    }
+
+    /// As far as it can be read.
+    [[nodiscard]] Page page_at(std::uint64_t place, std::uint64_t tags) const {
+        Page out{.place = place};
+        for (std::uint64_t i = 0; i < tags; ++i) {
+            Entry entry = entry_at(place + count_bytes() + i * entry_bytes());
+            if (entry.tag == new_subfile_type && is_whole(entry)) {
+                const std::uint64_t kind = value(entry, 0);
+                out.is_smaller = (kind & 1) != 0;
+                out.is_mask = (kind & 4) != 0;
+            }
+            if (entry.tag == subfile_type && is_whole(entry)) out.is_smaller = out.is_smaller || value(entry, 0) == 2;
+            if (entry.tag == image_width && is_whole(entry)) out.width = value(entry, 0);
+            if (entry.tag == image_length && is_whole(entry)) out.height = value(entry, 0);
+            if (entry.tag != sub_directories) continue;
+            const std::uint64_t size = size_of_type(entry.type);
+            if ((size != 4 && size != 8) || bytes_of(entry).empty()) continue;
+            if (entry.count * size > pointer_bytes()) entry.values = number(entry.values, pointer_bytes());
+            constexpr std::uint64_t max_inner = 64;
+            for (std::uint64_t k = 0; k < std::min(entry.count, max_inner); ++k) out.inner.push_back(value(entry, k));
+        }
+        return out;
+    }
+
+    /// The number of tags, of a directory that lies in the file.
+    [[nodiscard]] std::optional<std::uint64_t> tags_at(std::uint64_t place) const {
+        if (!fits(place, count_bytes())) return std::nullopt;
+        const std::uint64_t tags = number(place, count_bytes());
+        if (tags > max_tags || !fits(place + count_bytes(), tags * entry_bytes() + pointer_bytes()))
+            return std::nullopt;
+        return tags;
+    }
+
+    /// The pages from the first on, and which of them is read.
+    [[nodiscard]] std::uint64_t find_pages(std::uint64_t first) {
+        std::uint64_t all_tags = 0;
+        const auto is_known = [&](std::uint64_t place) {
+            return std::ranges::find(pages_, place, &Page::place) != pages_.end();
+        };
+        constexpr std::size_t max_pages = 4096;
+        for (std::uint64_t place = first; place != 0 && !is_known(place);) {
+            const std::optional<std::uint64_t> tags = tags_at(place);
+            if (!tags) break;
+            all_tags += *tags;
+            has_more_pages_ = pages_.size() == max_pages || all_tags > max_tags_of_pages;
+            if (has_more_pages_) break;
+            Page page = page_at(place, *tags);
+            // Levels of a texture, each of half the sides of that before it, do not all say so.
+            const auto is_half = [](std::uint64_t side, std::uint64_t of) {
+                return side == std::max<std::uint64_t>(of / 2, 1);
+            };
+            if (!pages_.empty() && page.width < pages_.back().width && is_half(page.width, pages_.back().width) &&
+                is_half(page.height, pages_.back().height))
+                page.is_smaller = true;
+            pages_.push_back(std::move(page));
+            place = number(place + count_bytes() + *tags * entry_bytes(), pointer_bytes());
+        }
+        const auto is_whole_picture = [](const Page& page) { return !page.is_smaller && !page.is_mask; };
+        if (const auto found = std::ranges::find_if(pages_, is_whole_picture); found != pages_.end())
+            return found->place;
+        for (const Page& page : pages_)
+            for (const std::uint64_t place : page.inner)
+                if (const auto tags = tags_at(place); tags && is_whole_picture(page_at(place, *tags))) return place;
+        return first;
+    }
 
     Result<> read_directory() {
         if (file_.size() < 8) return cut_off();
         is_little_ = file_[0] == std::byte{'I'};
         is_big_tiff_ = number(2, 2) == 43;
         if (is_big_tiff_ && (file_.size() < 16 || number(4, 2) != 8)) return cut_off();
-        const std::uint64_t place = is_big_tiff_ ? number(8, 8) : number(4, 4);
-        const std::size_t count_bytes = is_big_tiff_ ? 8 : 2, entry_bytes = is_big_tiff_ ? 20 : 12;
-        if (!fits(place, count_bytes)) return cut_off();
-        const std::uint64_t count = number(place, count_bytes);
+        const std::uint64_t place = find_pages(number(pointer_bytes() == 8 ? 8 : 4, pointer_bytes()));
+        if (!fits(place, count_bytes())) return cut_off();
+        const std::uint64_t count = number(place, count_bytes());
         if (count > max_tags) return malformed(fmt::format("{} tags, at most {} are allowed", count, max_tags));
-        directory_ = place + count_bytes;
-        if (!fits(directory_, count * entry_bytes + pointer_bytes())) return cut_off();
-        tags_end_ = directory_ + count * entry_bytes;
-        for (std::size_t at = directory_; at < tags_end_; at += entry_bytes) {
-            Entry entry{.tag = static_cast<std::uint32_t>(number(at, 2)),
-                        .type = static_cast<std::uint32_t>(number(at + 2, 2)),
-                        .count = number(at + 4, pointer_bytes()),
-                        .values = at + 4 + pointer_bytes(),
-                        .at = at};
+        directory_ = place + count_bytes();
+        if (!fits(directory_, count * entry_bytes() + pointer_bytes())) return cut_off();
+        tags_end_ = directory_ + count * entry_bytes();
+        for (std::size_t at = directory_; at < tags_end_; at += entry_bytes()) {
+            Entry entry = entry_at(at);
             if (entry.tag == icc_profile && profile_.empty()) profile_ = bytes_of(entry);
+            if (entry.tag == image_depth && is_whole(entry) && entry.count == 1 && value(entry, 0) > 1)
+                return user_error(fmt::format("a volume of {} slices, which is not read", value(entry, 0)));
             // A decoder takes the first of several.
             if (std::ranges::find(kept_tags, entry.tag) == kept_tags.end() || find(entry.tag) != nullptr) continue;
             const std::uint64_t size = size_of_type(entry.type);
@@ -147,6 +242,8 @@ class TiffChecker {
     }
 
     [[nodiscard]] std::size_t pointer_bytes() const { return is_big_tiff_ ? 8 : 4; }
+    [[nodiscard]] std::size_t count_bytes() const { return is_big_tiff_ ? 8 : 2; }
+    [[nodiscard]] std::size_t entry_bytes() const { return is_big_tiff_ ? 20 : 12; }
     [[nodiscard]] const Entry* find(std::uint32_t tag) const {
         const auto found = std::ranges::find(entries_, tag, &Entry::tag);
         return found == entries_.end() ? nullptr : &*found;
@@ -213,6 +310,11 @@ class TiffChecker {
         // CIE L*a*b*, with numbers of either sign or none, or of the ITU: decoders take one for another.
         if (meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) >= 8 && value(*meaning, 0) <= 10)
             return user_error("its colours are CIE L*a*b*, which is not read here: save it as RGB");
+        // White or black at 0, RGB, a palette, a mask, inks, YCbCr.
+        if (meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) > 6)
+            return user_error(fmt::format(
+                "the meaning {} of its samples{}, which is not read here: save it as RGB", value(*meaning, 0),
+                value(*meaning, 0) == 32803 || value(*meaning, 0) == 34892 ? " (numbers of a camera's sensor)" : ""));
         const bool is_negative = meaning != nullptr && is_whole(*meaning) && value(*meaning, 0) == 0;
         const bool is_known_whole = std::ranges::count(whole, bits_) > 0 && !(is_negative && bits_ > 8 && bits_ < 16);
         if (format == 3 ? bits_ == 16 || bits_ == 32 : format == 1 ? is_known_whole : format == 4 && bits_ == 8)
@@ -311,23 +413,44 @@ class TiffChecker {
         return {};
     }
 
-    /// The entries that were read take the first places, and no other picture follows.
+    /// The entries that were read take the first places, and no other picture comes before it or follows. A file that
+    /// does not say how many bits its samples have says that it is one, for which some decoders take eight.
     [[nodiscard]] std::vector<std::byte> cleaned() const {
         std::vector<std::byte> out(file_.begin(), file_.end());
-        const std::size_t entry_bytes = is_big_tiff_ ? 20 : 12, count_bytes = is_big_tiff_ ? 8 : 2;
         std::vector<const Entry*> sorted;
         for (const Entry& entry : entries_) sorted.push_back(&entry);
         std::ranges::sort(sorted, {}, [](const Entry* entry) { return entry->tag; });
         std::fill(out.begin() + static_cast<std::ptrdiff_t>(directory_),
                   out.begin() + static_cast<std::ptrdiff_t>(tags_end_ + pointer_bytes()), std::byte{0});
-        std::byte* to = out.data() + directory_;
-        for (const Entry* const entry : sorted) {
-            std::memcpy(to, file_.data() + entry->at, entry_bytes);
-            to += entry_bytes;
+        bool needs_bits = find(bits_per_sample) == nullptr;
+        const std::size_t count = sorted.size() + (needs_bits ? 1 : 0), bytes = count * entry_bytes();
+        std::size_t place = directory_ - count_bytes();
+        if (bytes > tags_end_ - directory_) {
+            place = out.size() + out.size() % 2;
+            out.resize(place + count_bytes() + bytes + pointer_bytes());
         }
-        for (std::size_t i = 0; i < count_bytes; ++i)
-            out[directory_ - count_bytes + i] =
-                static_cast<std::byte>(sorted.size() >> 8 * (is_little_ ? i : count_bytes - 1 - i) & 0xff);
+        const auto put = [&](std::size_t at, std::uint64_t number, std::size_t size) {
+            for (std::size_t i = 0; i < size; ++i)
+                out[at + i] = static_cast<std::byte>(number >> 8 * (is_little_ ? i : size - 1 - i) & 0xff);
+        };
+        std::size_t to = place + count_bytes();
+        const auto put_bits = [&] {
+            constexpr std::uint64_t short_type = 3;
+            put(to, bits_per_sample, 2);
+            put(to + 2, short_type, 2);
+            put(to + 4, 1, pointer_bytes());
+            put(to + 4 + pointer_bytes(), 1, 2);
+            to += entry_bytes();
+            needs_bits = false;
+        };
+        for (const Entry* const entry : sorted) {
+            if (needs_bits && entry->tag > bits_per_sample) put_bits();
+            std::memcpy(out.data() + to, file_.data() + entry->at, entry_bytes());
+            to += entry_bytes();
+        }
+        if (needs_bits) put_bits();
+        put(place, count, count_bytes());
+        put(pointer_bytes(), place, pointer_bytes());
         return out;
     }
 
@@ -335,6 +458,8 @@ class TiffChecker {
     bool is_little_ = true, is_big_tiff_ = false;
     std::size_t directory_ = 0, tags_end_ = 0;
     std::vector<Entry> entries_;
+    std::vector<Page> pages_;
+    bool has_more_pages_ = false;
     std::uint64_t width_ = 0, height_ = 0, bits_ = 0, samples_ = 0, compression_ = 0, planar_ = 0, rows_ = 0;
     std::uint64_t chunk_width_ = 0, chunk_height_ = 0;
 };
@@ -344,5 +469,7 @@ class TiffChecker {
 Result<std::vector<std::byte>> check_tiff(std::span<const std::byte> file) { return TiffChecker(file).run(); }
 
 std::span<const std::byte> profile_of_tiff(std::span<const std::byte> file) { return TiffChecker(file).profile(); }
+
+std::string left_out_of_tiff(std::span<const std::byte> file) { return TiffChecker(file).left_out(); }
 
 }  // namespace darkroom

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Looks over the first picture of a TIFF file before a decoder may see it: its tiles or strips, where they lie and how
-// many bytes they have, against the file and the sizes that are allowed.
+// Looks over a picture of a TIFF file before a decoder may see it, the first that is no smaller copy of another: its
+// tiles or strips, where they lie and how many bytes they have, against the file and the sizes that are allowed.
 
 #include <cstddef>
 #include <darkroom/result.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace darkroom {
@@ -18,5 +19,8 @@ namespace darkroom {
 
 /// The ICC profile of that picture (ICC.1:2022, B.4), as it lies in the file. Empty: there is none.
 [[nodiscard]] std::span<const std::byte> profile_of_tiff(std::span<const std::byte> file);
+
+/// See FileFormat::left_out: of pages, but for smaller copies.
+[[nodiscard]] std::string left_out_of_tiff(std::span<const std::byte> file);
 
 }  // namespace darkroom

@@ -33,7 +33,7 @@ const FileFormat& webp_format() {
         .color =
             [](FileFormat::Bytes file, bool) {
                 const Result<WebpPicture> picture = check_webp(file);
-                return picture ? color_of_profile(picture->profile) : FileColor();
+                return picture ? with_exif(color_of_profile(picture->profile), picture->exif) : FileColor();
             },
         .orientation = [](FileFormat::Bytes file, const PictureSource&) -> Result<int> {
             const Result<WebpPicture> picture = check_webp(file);

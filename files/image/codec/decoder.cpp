@@ -65,6 +65,7 @@ FileColor Decoder::color(std::size_t part) const {
     }
     return out;
 }
+std::string Decoder::left_out() const { return format().left_out == nullptr ? "" : format().left_out(state_->bytes); }
 std::span<const FilePart> Decoder::parts() const { return state_->opened.source->parts(); }
 
 std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribute) const {

@@ -36,6 +36,8 @@ class Decoder {
     [[nodiscard]] const FileFormat& format() const;
     /// What the file says of a part's colour. Of OpenEXR colorInteropID, which knows curves, then chromaticities.
     [[nodiscard]] FileColor color(std::size_t part) const;
+    /// See FileFormat::left_out.
+    [[nodiscard]] std::string left_out() const;
     [[nodiscard]] std::span<const FilePart> parts() const;
     /// The numbers of an attribute of a part (one number, a point, a matrix by rows), empty if it has none of that
     /// name, whose case does not matter.

@@ -479,6 +479,7 @@ void FrameReader::read_time_of_file() {
 
 Result<FrameFile> FrameReader::read() {
     frame_.channels = channel_names(decoder_.parts());
+    if (std::string text = decoder_.left_out(); !text.empty()) frame_.warnings.push_back(std::move(text));
     DARKROOM_TRY_VALUE(found_, find_channels(decoder_.parts(), options_.names, options_.view));
     if (options_.view.empty() && found_.views.size() > 1)
         frame_.warnings.push_back(fmt::format("has the views {}: {} is developed, --eye says which",

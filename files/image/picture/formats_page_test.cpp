@@ -171,6 +171,19 @@ class ImageFormats : public WithFolder {
                                kinds.empty() ? "read alone" : fmt::format("{}", fmt::join(kinds, ", ")));
         }
         out +=
+            "\n## Of several pictures\n"
+            "\n"
+            "One is read, and a warning says how many there are and which it is; `info` has it, too.\n"
+            "\n"
+            "| Format | What is read |\n"
+            "|---|---|\n"
+            "| OpenEXR | the parts of a frame ([names](conventions.md#names-that-are-recognised)); of tiles the "
+            "largest level |\n"
+            "| JPEG | the first; a gain map (ISO 21496-1, Ultra HDR, Apple) is told and not applied |\n"
+            "| PNG | the picture, which may be an animation's first frame |\n"
+            "| TIFF | the first page that is no smaller copy of another (`NewSubfileType`), or that a copy names "
+            "(`SubIFDs`) |\n"
+            "| WebP | an animation is refused |\n"
             "\n## What comes back\n\n"
             "Integers hold code values of a display, floats hold light. Alpha: none; straight; or colours multiplied "
             "by\n"
