@@ -25,7 +25,7 @@ inline constexpr long long max_picture_side = 65536;
 [[nodiscard]] Result<> check_decoded_size(std::uint64_t bytes, std::size_t file_size);
 
 /// Where the samples of one channel go. Integers of a file become 0..1 as floats, as encoded; OpenEXR files give halves
-/// and floats alone.
+/// and floats, and 32-bit integers as they are.
 struct SamplePlace {
     std::size_t channel = 0;  ///< of FilePart::channels
     SampleKind kind = SampleKind::Float;

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // `darkroom compare` as a build server meets it: exit codes, thresholds, what is not a number, many files at once.
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompression.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfOutputFile.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -171,6 +176,46 @@ TEST_F(CliCompare, LayersAreThoseThatTheFilesName) {
     const Outcome missing = compare("a.exr", "m.exr", {"--layers", "all"});
     EXPECT_EQ(missing.code, 3);
     EXPECT_NE(missing.err.find("depth: only the reference has it"), std::string::npos) << missing.err;
+}
+
+/// Colours, numbers of objects, and a layer of a number and a weight, by OpenEXR's own writer.
+void store_ids(const std::string& path, const std::vector<std::uint32_t>& ids, Imf::Compression compression) {
+    std::vector<float> ones(ids.size(), 1);
+    Imf::Header header(width, height);
+    header.compression() = compression;
+    Imf::FrameBuffer buffer;
+    const auto add = [&](const char* name, Imf::PixelType type, const void* first) {
+        header.channels().insert(name, Imf::Channel(type));
+        buffer.insert(name, Imf::Slice::Make(type, first, header.dataWindow()));
+    };
+    for (const char* const name : {"R", "G", "B", "object.weight"}) add(name, Imf::FLOAT, ones.data());
+    for (const char* const name : {"ids", "object.number"}) add(name, Imf::UINT, ids.data());
+    Imf::OutputFile output(path.c_str(), header);
+    output.setFrameBuffer(buffer);
+    output.writePixels(height);
+}
+
+// A float would hold neither of these numbers.
+TEST_F(CliCompare, NumbersOfObjectsAreComparedInAllTheirBits) {
+    constexpr std::uint32_t most = 0xffffffffU;
+    for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+        std::vector<std::uint32_t> ids(width * height, most - 1);
+        store_ids(path("m.exr"), ids, compression);
+        ids[5] = most;
+        ids[width * 3 + 7] = (1U << 24) + 1;
+        store_ids(path("n.exr"), ids, compression);
+        EXPECT_EQ(compare("n.exr", "n.exr", {"--layers", "all", "--fail-max", "0"}).code, 0);
+        EXPECT_EQ(compare("m.exr", "n.exr", {"--layers", "all", "--fail-max", "0"}).code, 3);
+        const Outcome told = compare("m.exr", "n.exr", {"--layers", "ids"});
+        EXPECT_EQ(told.out, "differing pixels 2 of 384\nworst pixel      7,3  ids: 4294967294 and 16777217\n");
+        const json layers = report("m.exr", "n.exr", {"--layers", "all"}).at("layers");
+        ASSERT_EQ(layers.size(), 4u) << "of the object its weight and its number";
+        for (const json& layer : layers) {
+            const bool is_number = layer.at("channels") == json{"ids"} || layer.at("channels") == json{"object.number"};
+            EXPECT_EQ(layer.at("differing_pixels"), is_number ? 2 : 0) << layer;
+            EXPECT_EQ(layer.at("max_error"), is_number ? most - 1.0 - ((1U << 24) + 1) : 0.0) << layer;
+        }
+    }
 }
 
 TEST_F(CliCompare, WhatCannotBeComparedIsNoDifference) {

@@ -30,6 +30,7 @@
 #include <optional>
 #include <thread>
 #include <tuple>
+#include <type_traits>
 
 #include "core/text/lower.hpp"
 #include "formats/exr/exr_zip.hpp"
@@ -191,6 +192,7 @@ struct ExrSource::State {
     }
 
     /// Each stored sample stands for a rectangle of pixels.
+    template <class Sample>
     static void read_subsampled(OpenPart& part, std::uint32_t row, std::uint32_t rows, const SamplePlace& place) {
         const Channel& channel = part.channels[place.channel];
         const int x_step = channel.stored.xSampling, y_step = channel.stored.ySampling;
@@ -200,11 +202,12 @@ struct ExrSource::State {
         const int width = window.max.x - window.min.x + 1;
         const auto columns = static_cast<std::size_t>((width + x_step - 1) / x_step);
         const auto lines = static_cast<std::size_t>((bottom - top) / y_step + 1);
-        std::vector<float> samples(columns * lines);
+        std::vector<Sample> samples(columns * lines);
         Imf::FrameBuffer buffer;
         buffer.insert(channel.name,
-                      Imf::Slice::Make(Imf::FLOAT, samples.data(), Imath::V2i(window.min.x, top), width,
-                                       bottom - top + 1, sizeof(float), columns * sizeof(float), x_step, y_step));
+                      Imf::Slice::Make(std::is_same_v<Sample, float> ? Imf::FLOAT : Imf::UINT, samples.data(),
+                                       Imath::V2i(window.min.x, top), width, bottom - top + 1, sizeof(Sample),
+                                       columns * sizeof(Sample), x_step, y_step));
         part.input.setFrameBuffer(buffer);
         part.input.readPixels(top, bottom);
         for (std::uint32_t i = 0; i < rows; ++i) {
@@ -236,15 +239,17 @@ struct ExrSource::State {
                                                : name == "B" ? &Imf::Rgba::b
                                                              : &Imf::Rgba::a;
             for (std::uint32_t y = 0; y < rows; ++y)
-                for (std::uint32_t x = 0; x < width; ++x) put(pixels[y * width + x].*component, place, y, x);
+                for (std::uint32_t x = 0; x < width; ++x) put(float{pixels[y * width + x].*component}, place, y, x);
         }
     }
 
-    static void put(float value, const SamplePlace& place, std::uint32_t row, std::uint32_t x) {
+    template <class Sample>
+    static void put(Sample value, const SamplePlace& place, std::uint32_t row, std::uint32_t x) {
+        static_assert(std::is_same_v<Sample, float> || std::is_same_v<Sample, std::uint32_t>);
         std::byte* const to = place.first + static_cast<std::ptrdiff_t>(row) * place.row_bytes +
                               static_cast<std::ptrdiff_t>(x) * place.pixel_bytes;
         if (place.kind == SampleKind::Half) {
-            const std::uint16_t bits = half(value).bits();
+            const std::uint16_t bits = half(static_cast<float>(value)).bits();
             std::memcpy(to, &bits, sizeof bits);
         } else {
             std::memcpy(to, &value, sizeof value);
@@ -316,6 +321,11 @@ std::uint32_t ExrSource::row_unit(std::size_t part) const {
 Result<> ExrSource::read(std::size_t number, std::uint32_t row, std::uint32_t rows,
                          std::span<const SamplePlace> places) {
     OpenPart& part = state_->parts[number];
+    for (const SamplePlace& place : places) {
+        const SampleKind kind = parts_[number].kinds[place.channel];
+        if (place.kind == SampleKind::Integer32 && (kind != place.kind || part.is_luminance_chroma))
+            return user_error(fmt::format("{} is not read as {}", name_of(kind), name_of(place.kind)));
+    }
     if (part.is_zip()) {
         std::vector<ZipChannel> channels(part.channels.size());
         for (const Channel& channel : part.channels) channels[channel.place].kind = kind_of(channel.stored.type);
@@ -340,7 +350,8 @@ Result<> ExrSource::read(std::size_t number, std::uint32_t row, std::uint32_t ro
         if (part.is_luminance_chroma && std::string_view("RGBA").find(channel.name) != std::string_view::npos)
             color.push_back(place);
         else if (channel.is_subsampled())
-            State::read_subsampled(part, row, rows, place);
+            place.kind == SampleKind::Integer32 ? State::read_subsampled<std::uint32_t>(part, row, rows, place)
+                                                : State::read_subsampled<float>(part, row, rows, place);
         else
             plain.push_back(place);
     }

@@ -17,7 +17,7 @@ namespace darkroom {
 
 /// Of samples in memory.
 [[nodiscard]] inline Imf::PixelType type_of(SampleKind kind) {
-    return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT;
+    return kind == SampleKind::Half ? Imf::HALF : kind == SampleKind::Integer32 ? Imf::UINT : Imf::FLOAT;
 }
 
 class ExrSource final : public PictureSource {

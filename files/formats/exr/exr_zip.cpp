@@ -90,6 +90,8 @@ void place_row(const std::uint8_t* from, SampleKind kind, std::size_t width, std
         place_row<float, std::uint16_t>(from, width, to, place.pixel_bytes, imath_float_to_half);
     else if (kind == SampleKind::Float)
         place_row<float, float>(from, width, to, place.pixel_bytes, same);
+    else if (place.kind == SampleKind::Integer32)
+        place_row<std::uint32_t, std::uint32_t>(from, width, to, place.pixel_bytes, same);
     else
         place_row<std::uint32_t, float>(from, width, to, place.pixel_bytes,
                                         [](std::uint32_t value) { return static_cast<float>(value); });

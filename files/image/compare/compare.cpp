@@ -12,13 +12,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double difference(float a, float b) {
+double difference(double a, double b) {
     if (a == b || (std::isnan(a) && std::isnan(b))) return 0.0;
     if (std::isnan(a) || std::isnan(b)) return infinity;
-    return std::abs(static_cast<double>(a) - static_cast<double>(b));
+    return std::abs(a - b);
 }
 
-void count(NonFinite& counts, float value) {
+void count(NonFinite& counts, double value) {
     if (std::isnan(value))
         ++counts.nan;
     else if (std::isinf(value))
@@ -40,22 +40,23 @@ constexpr std::array<std::array<float, 3>, 33> magma_knots = {
      {0.997325f, 0.711848f, 0.488154f}, {0.996898f, 0.769591f, 0.534892f}, {0.995131f, 0.827052f, 0.585701f},
      {0.992440f, 0.884330f, 0.640099f}, {0.989434f, 0.941470f, 0.697519f}, {0.987053f, 0.991438f, 0.749504f}}};
 
-}  // namespace
-
-SampleErrors measure(std::span<const float> reference, std::span<const float> test, const SampleLayout& layout,
-                     std::optional<double> peak) {
-    SampleErrors out;
+template <class Sample>
+SampleErrors errors_of(std::span<const Sample> reference, std::span<const Sample> test, const SampleLayout& layout,
+                       std::optional<double> peak) {
+    SampleErrors out{.pixels = reference.size() / layout.stride};
     double sum = 0.0;
     double squares = 0.0;
     double largest = 0.0;
-    for (std::size_t i = layout.first; i < reference.size(); i += layout.stride)
+    for (std::size_t i = layout.first; i < reference.size(); i += layout.stride) {
+        bool is_same = true;
         for (std::uint32_t channel = 0; channel < layout.count; ++channel) {
-            const float a = reference[i + channel], b = test[i + channel];
+            const double a = reference[i + channel], b = test[i + channel];
             count(out.reference, a);
             count(out.test, b);
-            if (std::isfinite(a)) largest = std::max(largest, std::abs(static_cast<double>(a)));
+            if (std::isfinite(a)) largest = std::max(largest, std::abs(a));
             const double error = difference(a, b);
             if (error == 0.0) continue;
+            is_same = false;
             out.non_finite_differences += !std::isfinite(a) || !std::isfinite(b);
             sum += error;
             squares += error * error;
@@ -65,11 +66,25 @@ SampleErrors measure(std::span<const float> reference, std::span<const float> te
             out.worst = {static_cast<std::uint32_t>(pixel % layout.width),
                          static_cast<std::uint32_t>(pixel / layout.width), channel, a, b};
         }
-    const double samples = static_cast<double>(reference.size() / layout.stride) * layout.count;
+        out.differing_pixels += is_same ? 0 : 1;
+    }
+    const double samples = static_cast<double>(out.pixels) * layout.count;
     const double top = peak.value_or(largest);
     out.mean_error = sum / samples;
     out.psnr = squares == 0.0 ? infinity : 10.0 * std::log10(top * top * samples / squares);
     return out;
+}
+
+}  // namespace
+
+SampleErrors measure(std::span<const float> reference, std::span<const float> test, const SampleLayout& layout,
+                     std::optional<double> peak) {
+    return errors_of(reference, test, layout, peak);
+}
+
+SampleErrors measure(std::span<const std::uint32_t> reference, std::span<const std::uint32_t> test,
+                     const SampleLayout& layout) {
+    return errors_of(reference, test, layout, {});
 }
 
 Result<Comparison> compare(const Picture& reference, const Picture& test, const FlipDesc& desc) {

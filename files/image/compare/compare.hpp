@@ -30,19 +30,23 @@ struct NonFinite {
 struct SampleErrors {
     struct Place {
         std::uint32_t x = 0, y = 0, channel = 0;
-        float reference = 0, test = 0;
+        double reference = 0, test = 0;
     };
     double max_error = 0.0;   ///< largest absolute difference
     double mean_error = 0.0;  ///< mean absolute difference
     double psnr = 0.0;        ///< in dB; infinite if nothing differs
     Place worst;              ///< the first place of the largest difference, if it is above 0
     NonFinite reference, test;
+    std::uint64_t pixels = 0, differing_pixels = 0;  ///< of which a channel is another
     std::uint64_t non_finite_differences = 0;  ///< samples that are finite in one buffer alone, or of another kind
 };
 
 /// Both buffers have one size. `peak` is that of PSNR; not given: the reference's largest finite absolute value.
 [[nodiscard]] SampleErrors measure(std::span<const float> reference, std::span<const float> test,
                                    const SampleLayout& layout, std::optional<double> peak = {});
+/// Of numbers in all their bits.
+[[nodiscard]] SampleErrors measure(std::span<const std::uint32_t> reference, std::span<const std::uint32_t> test,
+                                   const SampleLayout& layout);
 
 /// The errors of red, green and blue. The peak of display-encoded pictures is 1. What FLIP
 /// makes of NaN is said there.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <type_traits>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -125,39 +126,57 @@ std::vector<std::string> LayerFile::channel_names(const FileLayer& layer) const 
     return names;
 }
 
-bool LayerFile::has_wide_integers(const FileLayer& layer) const {
+FileLayer LayerFile::of_kind(const FileLayer& layer, bool is_wide_integer) const {
     const std::vector<SampleKind>& kinds = decoder_.parts()[layer.part].kinds;
-    return std::ranges::any_of(layer.channels, [&](std::uint32_t c) { return kinds[c] == SampleKind::Integer32; });
+    FileLayer out = layer;
+    std::erase_if(out.channels,
+                  [&](std::uint32_t c) { return (kinds[c] == SampleKind::Integer32) != is_wide_integer; });
+    return out;
+}
+
+template <class Sample>
+Result<> LayerFile::read_samples(const FileLayer& layer, LayerSamples& out, std::vector<Sample>& to) {
+    const FilePart& part = decoder_.parts()[layer.part];
+    const std::size_t count = out.channels, row_samples = count * part.width;
+    to.resize(std::size_t{out.width} * out.height * count);
+    const std::int64_t left = std::max<std::int64_t>(0, -std::int64_t{part.x});
+    const std::int64_t right = std::min<std::int64_t>(part.width, std::int64_t{part.display_width} - part.x);
+    const std::uint32_t band = decoder_.band_rows(layer.part, row_samples * sizeof(Sample));
+    std::vector<Sample> samples(row_samples * std::min(band, part.height));
+    std::vector<SamplePlace> places;
+    for (std::size_t c = 0; c < count; ++c)
+        places.push_back({.channel = layer.channels[c],
+                          .kind = std::is_same_v<Sample, float> ? SampleKind::Float : SampleKind::Integer32,
+                          .first = reinterpret_cast<std::byte*>(samples.data() + c),
+                          .pixel_bytes = static_cast<std::ptrdiff_t>(count * sizeof(Sample)),
+                          .row_bytes = static_cast<std::ptrdiff_t>(row_samples * sizeof(Sample))});
+    for (std::uint32_t row = 0; row < part.height; row += band) {
+        const std::uint32_t rows = std::min(band, part.height - row);
+        DARKROOM_TRY(decoder_.read_rows(layer.part, row, rows, places));
+        for (std::uint32_t i = 0; i < rows && left < right; ++i) {
+            const std::int64_t y = std::int64_t{row} + i + part.y;
+            if (y < 0 || y >= part.display_height) continue;
+            const Sample* const from = &samples[row_samples * i + static_cast<std::size_t>(left) * count];
+            std::copy(from, from + static_cast<std::size_t>(right - left) * count,
+                      &to[(static_cast<std::size_t>(y) * out.width + static_cast<std::size_t>(left + part.x)) * count]);
+        }
+    }
+    return {};
 }
 
 Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
     const FilePart& part = decoder_.parts()[layer.part];
-    if (has_wide_integers(layer))
-        return error(fmt::format("the layer {} has 32-bit integers; numbers of at most 16 bits, half or float are read",
-                                 one_printable_line(layer.name)));
+    const bool is_wide = part.kinds[layer.channels.front()] == SampleKind::Integer32;
+    if (of_kind(layer, is_wide).channels.size() != layer.channels.size())
+        return error(
+            fmt::format("the layer {} has 32-bit integers beside other numbers", one_printable_line(layer.name)));
     const auto count = static_cast<std::uint32_t>(layer.channels.size());
     if (std::uint64_t{part.display_width} * part.display_height > max_samples / std::max(count, 4U))
         return error(fmt::format("the layer {} is {}x{} with {} channels, at most {} samples are allowed",
                                  one_printable_line(layer.name), part.display_width, part.display_height, count,
                                  max_samples));
     LayerSamples out{.width = part.display_width, .height = part.display_height, .channels = count};
-    out.values.resize(std::size_t{out.width} * out.height * count);
-    const auto range = std::ranges::minmax(layer.channels);
-    const std::uint32_t first = range.min, read_count = range.max - first + 1;
-    const std::int64_t left = std::max<std::int64_t>(0, -std::int64_t{part.x});
-    const std::int64_t right = std::min<std::int64_t>(part.width, std::int64_t{part.display_width} - part.x);
-    const auto place = [&](std::uint32_t row, std::uint32_t rows, std::span<const float> samples) {
-        for (std::uint32_t i = 0; i < rows; ++i) {
-            const std::int64_t y = std::int64_t{row} + i + part.y;
-            if (y < 0 || y >= part.display_height) continue;
-            const float* const in = &samples[std::size_t{i} * part.width * read_count];
-            float* const to = &out.values[static_cast<std::size_t>(y) * out.width * count];
-            for (std::int64_t x = left; x < right; ++x)
-                for (std::uint32_t c = 0; c < count; ++c)
-                    to[(x + part.x) * count + c] = in[x * read_count + (layer.channels[c] - first)];
-        }
-    };
-    DARKROOM_TRY(decoder_.read(layer.part, first, read_count, place));
+    DARKROOM_TRY(is_wide ? read_samples(layer, out, out.integers) : read_samples(layer, out, out.values));
     return out;
 }
 

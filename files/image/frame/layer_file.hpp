@@ -30,6 +30,7 @@ struct FileLayer {
 struct LayerSamples {
     std::uint32_t width = 0, height = 0, channels = 0;
     std::vector<float> values;
+    std::vector<std::uint32_t> integers;  ///< in place of `values`, of a layer of 32-bit integers
 };
 
 /// The range of some samples, and how many are not finite.
@@ -55,8 +56,9 @@ class LayerFile {
     /// By `name`, by `file_name`, "motion" for velocity, or one channel by its full name.
     [[nodiscard]] Result<FileLayer> find(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> channel_names(const FileLayer& layer) const;
-    [[nodiscard]] bool has_wide_integers(const FileLayer& layer) const;
-    /// Refused: 32-bit integers, of which a float holds 24 bits.
+    /// Its channels of 32-bit integers, of which a float holds 24 bits, or its others.
+    [[nodiscard]] FileLayer of_kind(const FileLayer& layer, bool is_wide_integer) const;
+    /// Refused: 32-bit integers beside other numbers.
     [[nodiscard]] Result<LayerSamples> read(const FileLayer& layer);
     /// One for each channel of the part, over its data window.
     [[nodiscard]] Result<std::vector<SampleRange>> ranges(std::size_t part);
@@ -65,6 +67,8 @@ class LayerFile {
     LayerFile(std::string path, Decoder decoder) : path_(std::move(path)), decoder_(std::move(decoder)) {}
     [[nodiscard]] Failure error(std::string_view text) const;
     void list_layers();
+    template <class Sample>
+    [[nodiscard]] Result<> read_samples(const FileLayer& layer, LayerSamples& out, std::vector<Sample>& to);
 
     std::string path_;
     Decoder decoder_;

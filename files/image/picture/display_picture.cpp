@@ -34,6 +34,8 @@ Result<ComparablePicture> read_comparable(const std::filesystem::path& path) {
 Result<ComparablePicture> read_comparable(LayerFile& file) {
     DARKROOM_TRY_VALUE(const FileLayer layer, file.find("color"));
     DARKROOM_TRY_VALUE(const LayerSamples samples, file.read(layer));
+    if (samples.values.empty())
+        return user_error("the color has 32-bit integers; numbers of at most 16 bits, half or float are read");
     const FilePart& part = file.decoder().parts()[layer.part];
     ComparablePicture out{.picture = picture_of(samples, part)};
     const SampleKind kind = part.kinds[layer.channels.front()];

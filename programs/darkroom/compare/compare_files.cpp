@@ -33,6 +33,9 @@ class FileComparison {
                               std::optional<ComparedColor>* color) {
         out_.reference = reference.string();
         out_.test = test.string();
+        for (const auto& [file, name] : {std::pair(&files_[0], &out_.reference), std::pair(&files_[1], &out_.test)})
+            if (const std::string text = file->decoder().left_out(); !text.empty())
+                warn(fmt::format("{}: {}", printable(*name), text));
         color_ = color;
         for (const std::string& name : request_.has_all_layers ? all_layers() : request_.layers)
             DARKROOM_TRY(add(name));
@@ -54,8 +57,6 @@ class FileComparison {
                 if (std::ranges::find(others, layer.name, &FileLayer::name) == others.end())
                     out_.failures.push_back(fmt::format("{}: only the {} has it", shown(layer.name),
                                                         i == 0 ? "reference" : "picture under test"));
-                else if (files_[i].has_wide_integers(layer) && i == 0)
-                    out_.not_compared.push_back(fmt::format("{}: has 32-bit integers", shown(layer.name)));
                 else if (i == 0)
                     common.push_back(layer.name);
             }
@@ -68,7 +69,17 @@ class FileComparison {
             DARKROOM_TRY_VALUE(FileLayer found, files_[i].find(name));
             layers[i] = std::move(found);
         }
-        return layers[0].name == "color" && layers[1].name == "color" ? add_color(layers) : add_numbers(layers);
+        const auto has_color = [&](std::size_t i) {
+            return layers[i].name == "color" && files_[i].of_kind(layers[i], true).channels.empty();
+        };
+        if (has_color(0) && has_color(1)) return add_color(layers);
+        for (const bool is_wide_integer : {false, true}) {
+            const std::array of_kind{files_[0].of_kind(layers[0], is_wide_integer),
+                                     files_[1].of_kind(layers[1], is_wide_integer)};
+            if (!of_kind[0].channels.empty() || !of_kind[1].channels.empty())
+                DARKROOM_TRY(add_numbers(of_kind, is_wide_integer));
+        }
+        return {};
     }
 
     Result<> add_color(const std::array<FileLayer, 2>& layers) {
@@ -99,7 +110,11 @@ class FileComparison {
         return {};
     }
 
-    Result<> add_numbers(const std::array<FileLayer, 2>& layers) {
+    /// Of a kind: numbers, or 32-bit integers, which are compared in all their bits.
+    Result<> add_numbers(const std::array<FileLayer, 2>& layers, bool is_wide_integer) {
+        if (layers[0].channels.empty() || layers[1].channels.empty())
+            return user_error(
+                fmt::format("{}: only one of them has 32-bit integers in the layer {}", both(), shown(layers[0].name)));
         DARKROOM_TRY_VALUE(darkroom::LayerSamples a, files_[0].read(layers[0]));
         DARKROOM_TRY_VALUE(darkroom::LayerSamples b, files_[1].read(layers[1]));
         if (a.width != b.width || a.height != b.height || a.channels != b.channels)
@@ -107,10 +122,12 @@ class FileComparison {
                 "{}: the layers {} differ in size: {}x{} with {} channels and {}x{} with {}; "
                 "they must be the same",
                 both(), shown(layers[0].name), a.width, a.height, a.channels, b.width, b.height, b.channels));
+        const darkroom::SampleLayout layout{.width = a.width, .stride = a.channels, .count = a.channels};
         out_.layers.push_back({.name = layers[0].name,
                                .channels = files_[0].channel_names(layers[0]),
-                               .errors = darkroom::measure(
-                                   a.values, b.values, {.width = a.width, .stride = a.channels, .count = a.channels})});
+                               .errors = is_wide_integer ? darkroom::measure(a.integers, b.integers, layout)
+                                                         : darkroom::measure(a.values, b.values, layout),
+                               .is_integer = is_wide_integer});
         return {};
     }
 

@@ -35,6 +35,7 @@ struct ComparedLayer {
         double mean = 0, weighted_median = 0, max = 0;
     };
     std::optional<Flip> flip;  ///< of a color
+    bool is_integer = false;   ///< of 32 bits: numbers of things, which are the same or another
 
     [[nodiscard]] std::uint64_t non_finite_differences() const;
     [[nodiscard]] darkroom::NonFinite reference_counts() const;
@@ -46,8 +47,7 @@ struct ComparedLayer {
 struct ComparedFiles {
     std::string reference, test;  ///< paths
     std::vector<ComparedLayer> layers;
-    std::vector<std::string> not_compared;  ///< layers and why, "ids: has 32-bit integers"
-    std::vector<std::string> failures;      ///< what is too much; empty: the test passes
+    std::vector<std::string> failures;  ///< what is too much; empty: the test passes
 };
 
 /// What a picture of a comparison is made of.

@@ -31,7 +31,8 @@ Json json_of(const ComparedLayer& layer) {
              {"channels", layer.channels},
              {"max_error", json_number(layer.errors.max_error)},
              {"mean_error", json_number(layer.errors.mean_error)},
-             {"psnr", json_number(layer.errors.psnr)}};
+             {"psnr", json_number(layer.errors.psnr)},
+             {"differing_pixels", layer.errors.differing_pixels}};
     if (layer.alpha) out["max_alpha_error"] = json_number(layer.alpha->max_error);
     const darkroom::SampleErrors::Place& worst = layer.errors.worst;
     out["worst"] = nullptr;
@@ -54,6 +55,13 @@ Json json_of(const ComparedLayer& layer) {
 
 std::string text_of(const ComparedLayer& layer) {
     const darkroom::SampleErrors& errors = layer.errors;
+    if (layer.is_integer) {
+        std::string out = fmt::format("differing pixels {} of {}\n", errors.differing_pixels, errors.pixels);
+        if (errors.differing_pixels > 0)
+            out += fmt::format("worst pixel      {},{}  {}: {} and {}\n", errors.worst.x, errors.worst.y,
+                               layer.channels[errors.worst.channel], errors.worst.reference, errors.worst.test);
+        return out;
+    }
     std::string out =
         fmt::format("max error        {:.6g}\nmean error       {:.6g}\n", errors.max_error, errors.mean_error);
     if (layer.alpha) out += fmt::format("max alpha error  {:.6g}\n", layer.alpha->max_error);
@@ -118,9 +126,11 @@ std::size_t ComparedSet::failed() const {
 Json json_of(const ComparedFiles& files) {
     Json layers = Json::array();
     for (const ComparedLayer& layer : files.layers) layers.push_back(json_of(layer));
-    return {{"reference", printable(files.reference)},   {"test", printable(files.test)},
-            {"passes", files.failures.empty()},          {"failures", texts(files.failures)},
-            {"not_compared", texts(files.not_compared)}, {"layers", std::move(layers)}};
+    return {{"reference", printable(files.reference)},
+            {"test", printable(files.test)},
+            {"passes", files.failures.empty()},
+            {"failures", texts(files.failures)},
+            {"layers", std::move(layers)}};
 }
 
 Json json_of(const ComparedSet& set) {
@@ -146,7 +156,6 @@ std::string text_of(const ComparedFiles& files) {
             out += fmt::format("{}{}\n", out.empty() ? "" : "\n", darkroom::one_printable_line(layer.name));
         out += text_of(layer);
     }
-    for (const std::string& text : files.not_compared) out += fmt::format("not compared: {}\n", text);
     return out;
 }
 
