@@ -32,10 +32,9 @@ Result<> put_integers(const IntegerRow& row, const SamplePlace& place, std::byte
     else if (place.kind == SampleKind::Integer16)
         put<std::uint8_t>(row, place, to, [](std::uint8_t value) { return static_cast<std::uint16_t>(value * 257); });
     else if (place.kind == SampleKind::Float && !is_wide)
-        put<std::uint8_t>(row, place, to, [](std::uint8_t value) { return static_cast<float>(value) * (1.0F / 255); });
+        put<std::uint8_t>(row, place, to, [](std::uint8_t value) { return static_cast<float>(value) / 255; });
     else if (place.kind == SampleKind::Float)
-        put<std::uint16_t>(row, place, to,
-                           [](std::uint16_t value) { return static_cast<float>(value) * (1.0F / 65535); });
+        put<std::uint16_t>(row, place, to, [](std::uint16_t value) { return static_cast<float>(value) / 65535; });
     else
         return user_error(fmt::format("{}-bit integers are not read as {}", row.bits, name_of(place.kind)));
     return {};

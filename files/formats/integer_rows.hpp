@@ -15,7 +15,8 @@ struct IntegerRow {
     std::size_t width = 0, channels = 0, bits = 0;
 };
 
-/// As they are, widened, or as shares of the largest. An error where the place asks for something else.
+/// As they are, widened, or as shares of the largest, which are divided: 8 bits and the same code in 16 bits are one
+/// number then. An error where the place asks for something else.
 [[nodiscard]] Result<> put_integers(const IntegerRow& row, const SamplePlace& place, std::byte* to);
 
 }  // namespace darkroom

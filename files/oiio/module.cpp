@@ -82,6 +82,15 @@ Result<> flat(const OIIO::ImageSpec& spec) {
     return {};
 }
 
+/// Of an integer of so many bytes, as put_integers() has it: OpenImageIO's own of 8 and of 16 bits differ in the last
+/// digit.
+void put_share(const std::byte* from, std::size_t bytes, std::byte* to) {
+    std::uint16_t code = 0;
+    std::memcpy(&code, from, bytes);
+    const float share = static_cast<float>(code) / (bytes == 1 ? 255.0f : 65535.0f);
+    std::memcpy(to, &share, sizeof share);
+}
+
 class OiioSource final : public PictureSource {
   public:
     static Result<std::unique_ptr<PictureSource>> open(const FileFormat& format, std::span<const std::byte> bytes) {
@@ -157,7 +166,9 @@ class OiioSource final : public PictureSource {
             std::minmax_element(places.begin(), places.end(),
                                 [](const SamplePlace& a, const SamplePlace& b) { return a.channel < b.channel; });
         const int begin = static_cast<int>(least->channel), end = static_cast<int>(most->channel) + 1;
-        const SampleKind kind = places.front().kind;
+        const bool is_share = places.front().kind == SampleKind::Float && is_integer(parts_[0].kinds[0]) &&
+                              std::ranges::count(parts_[0].kinds, parts_[0].kinds[0]) == spec_.nchannels;
+        const SampleKind kind = is_share ? parts_[0].kinds[0] : places.front().kind;
         const std::size_t size = size_of(kind), pixel = size * static_cast<std::size_t>(end - begin);
         const std::size_t width = static_cast<std::size_t>(spec_.width);
         samples_.resize(pixel * width * rows);
@@ -175,7 +186,10 @@ class OiioSource final : public PictureSource {
             for (std::uint32_t y = 0; y < rows; ++y) {
                 std::byte* to = place.first + static_cast<std::ptrdiff_t>(y) * place.row_bytes;
                 for (std::size_t x = 0; x < width; ++x, from += pixel, to += place.pixel_bytes)
-                    std::memcpy(to, from, size);
+                    if (is_share)
+                        put_share(from, size, to);
+                    else
+                        std::memcpy(to, from, size);
             }
         }
         return {};

@@ -266,6 +266,40 @@ TEST_F(CliPictureMeaning, EveryPairOfBitsAndKindOfTiffIsReadRightOrRefusedByName
     EXPECT_EQ(read, 2U * 10 + 7) << "8 kinds of whole numbers and 2 of floats, 5 and 2 where 0 is white";
 }
 
+// TIFF 6.0, 4: a file that says no BitsPerSample has one.
+TEST_F(CliPictureMeaning, ATiffThatSaysNoBitsHasOneForEachSample) {
+    TestTiff tiff = TestTiff::gray(16, 1);
+    tiff.tags.erase(258);
+    tiff.tags[279] = {2};
+    tiff.samples = "\xa5\x0f";
+    for (const bool has_room : {false, true}) {
+        if (has_room) tiff.tags[297] = {0};  // the number of the page, which no decoder needs
+        write("bits.tif", tiff.text());
+        const std::vector<float> found = light("bits.tif");
+        for (std::size_t i = 0; i < 16; ++i)
+            EXPECT_EQ(found[4 * i], static_cast<float>(0xa50fU >> (15 - i) & 1U)) << has_room << i;
+    }
+}
+
+// c / 255 is 257 c / 65535, and a float has one number for it.
+TEST_F(CliPictureMeaning, ACodeIsTheSameLightInEightAndInSixteenBits) {
+    std::vector<std::uint64_t> codes(256 * 3), wide;
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = i / 3;
+    for (const std::uint64_t code : codes) wide.push_back(code * 257);
+    store_tiff(path("8.tif"), 256, 1, 3, 8, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB, codes);
+    store_tiff(path("16.tif"), 256, 1, 3, 16, SAMPLEFORMAT_UINT, PHOTOMETRIC_RGB, wide);
+    Picture numbers(256, 1);
+    for (std::size_t i = 0; i < numbers.pixels.size(); ++i)
+        numbers.pixels[i] = i % 4 == 3 ? 1 : static_cast<float>(i / 4) / 255;
+    ASSERT_TRUE(write_picture(path("8.png"), numbers));
+    ASSERT_TRUE(write_picture(path("16.png"), numbers, {.samples = SampleKind::Integer16}));
+    for (const std::string a : {"8.tif", "16.tif", "8.png", "16.png"}) {
+        EXPECT_EQ(picture(a).pixels, numbers.pixels) << a;
+        for (const std::string b : {"8.tif", "16.tif", "8.png", "16.png"})
+            EXPECT_EQ(run({"compare", path(a), path(b), "--fail-max", "0"}).code, 0) << a << ' ' << b;
+    }
+}
+
 // Ward: a picture's numbers were multiplied by every EXPOSURE and COLORCORR of its header.
 TEST_F(CliPictureMeaning, RadianceIsReadAsItsHeaderSays) {
     const std::string pixels("\x80\x40\x20\x81\xff\x01\x00\x80", 8);  // two pixels, (m + 0.5) / 256 * 2^(e - 128)
