@@ -16,7 +16,8 @@ using test::Outcome;
 
 class CliHistogram : public test::CliFixture {
   protected:
-    /// Of 100 pixels 40 of middle grey, 30 two stops above, 20 black, 9 four and a half stops below, one infinite.
+    /// Of 100 pixels 40 of middle grey, 30 two stops above, 20 black, 7 four and a half stops below, one infinite, two
+    /// that are no number in a channel.
     void make_files() override {
         std::vector<float> values;
         for (std::uint32_t i = 0; i < 100; ++i)
@@ -26,6 +27,7 @@ class CliHistogram : public test::CliFixture {
                           : i < 90 ? 0.0f
                           : i < 99 ? 0.18f * std::exp2(-4.5f)
                                    : std::numeric_limits<float>::infinity());
+        values[97 * 3] = values[98 * 3 + 1] = std::numeric_limits<float>::quiet_NaN();
         test::store_floats(path("frame.exr"), {"R", "G", "B"}, 10, values);
     }
 };
@@ -33,17 +35,19 @@ class CliHistogram : public test::CliFixture {
 TEST_F(CliHistogram, TellsTheSharesOfStopsAndWhatIsNoLight) {
     const Outcome text = run({"histogram", path("frame.exr")});
     EXPECT_EQ(text.code, 0) << text.err;
-    for (const char* const line :
-         {"   +2  30.00 % ##############################\n", "   +0  40.00 % ####", "   -5   9.00 % #########\n",
-          "20.00 % black or below", "1.00 % NaN or infinite", "50 % +0.0", "95 % +2.0"})
+    for (const char* const line : {"   +2  30.00 % ##############################\n", "   +0  40.00 % ####",
+                                   "   -5   7.00 % #######\n", "20.00 % black or below", "  2.00 % NaN in a channel",
+                                   "  1.00 % infinite in a channel", "50 % +0.0", "95 % +2.0"})
         EXPECT_NE(text.out.find(line), std::string::npos) << line << text.out;
     const Outcome document = run({"histogram", path("frame.exr"), "--json"});
     const json out = json::parse(document.out);
     EXPECT_EQ(out.at("black"), 20);
-    EXPECT_EQ(out.at("not_numbers"), 1);
-    EXPECT_EQ(out.at("stops").size(), 24u) << "what is infinite counts as the largest half";
-    EXPECT_EQ(out.at("stops").front(), (json{{"from", -5}, {"pixels", 9}}));
-    EXPECT_NEAR(out.at("brightest").get<double>(), 65504, 1);
+    EXPECT_EQ(out.at("nan"), 2);
+    EXPECT_EQ(out.at("infinite"), 1);
+    EXPECT_EQ(out.at("above_white"), 0);
+    EXPECT_EQ(out.at("stops").size(), 8u) << "what is no number is in no stop";
+    EXPECT_EQ(out.at("stops").front(), (json{{"from", -5}, {"pixels", 7}}));
+    EXPECT_NEAR(out.at("brightest").get<double>(), 0.72001, 1e-6);
     EXPECT_EQ(json::parse(run({"histogram", path("frame.exr"), path("frame.exr"), "--json"}).out).size(), 2u);
 }
 

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "core/text/param_text.hpp"
+#include "core/try.hpp"
 #include "image/frame/frame_file.hpp"
+#include "image/frame/layer_file.hpp"
 #include "programs/darkroom/commands.hpp"
 #include "programs/darkroom/run/json.hpp"
 #include "programs/darkroom/run/report.hpp"
@@ -29,15 +31,34 @@ constexpr std::array percents{1, 5, 25, 50, 75, 95, 99};
 struct Light {
     std::vector<double> above_zero;  ///< sorted
     std::uint64_t pixels = 0, black = 0, above_white = 0, transparent = 0;
-    std::uint64_t not_numbers = 0;  ///< in the file; reading made them 0 and the largest half
+    std::uint64_t nan = 0, infinite = 0;  ///< in a channel of the file; they count nowhere else
 };
 
-Light light_of(const FrameFile& frame) {
+/// What each pixel of the file's colour is, in the file; empty: all are finite.
+darkroom::Result<std::vector<bool>> not_finite(const std::string& path, const FrameFile& frame, Light& light) {
+    if (frame.counts.nan_color + frame.counts.infinite_color == 0) return std::vector<bool>();
+    DARKROOM_TRY_VALUE(darkroom::LayerFile file, darkroom::LayerFile::open(path));
+    DARKROOM_TRY_VALUE(const darkroom::FileLayer layer, file.find("color"));
+    DARKROOM_TRY_VALUE(const darkroom::LayerSamples samples, file.read(layer));
+    // Grey, or red, green and blue; alpha is the last of two or four.
+    const std::size_t channels = samples.channels, colors = channels < 3 ? 1 : 3;
+    std::vector<bool> out(frame.color.pixels.size() / 4);
+    for (std::size_t pixel = 0; pixel < out.size(); ++pixel) {
+        const std::span<const float> color(&samples.values[pixel * channels], colors);
+        out[pixel] = !std::ranges::all_of(color, [](float value) { return std::isfinite(value); });
+        if (out[pixel])
+            ++(std::ranges::any_of(color, [](float v) { return std::isnan(v); }) ? light.nan : light.infinite);
+    }
+    return out;
+}
+
+darkroom::Result<Light> light_of(const std::string& path, const FrameFile& frame) {
     Light out;
+    DARKROOM_TRY_VALUE(const std::vector<bool> is_no_light, not_finite(path, frame, out));
     const std::vector<float>& numbers = frame.color.pixels;
     out.pixels = numbers.size() / 4;
-    out.not_numbers = frame.counts.nan_color + frame.counts.infinite_color;
     for (std::size_t i = 0; i < numbers.size(); i += 4) {
+        if (!is_no_light.empty() && is_no_light[i / 4]) continue;
         const double luminance = 0.2126 * numbers[i] + 0.7152 * numbers[i + 1] + 0.0722 * numbers[i + 2];
         if (frame.has_alpha && numbers[i + 3] == 0)
             ++out.transparent;
@@ -76,7 +97,8 @@ Json document_of(const std::string& path, const FrameFile& frame, const Light& l
              {"height", frame.color.height},
              {"black", light.black},
              {"above_white", light.above_white},
-             {"not_numbers", light.not_numbers},
+             {"nan", light.nan},
+             {"infinite", light.infinite},
              {"transparent", light.transparent},
              {"stops", Json::array()},
              {"percentiles", Json::object()}};
@@ -101,7 +123,8 @@ void tell_of(const std::string& path, const FrameFile& frame, const Light& light
                            std::string(static_cast<std::size_t>(std::ceil(share(count))), '#')));
     for (const auto& [count, name] :
          {std::pair(light.black, "black or below"), std::pair(light.above_white, "above white (1.0) in a channel"),
-          std::pair(light.not_numbers, "NaN or infinite, taken for 0 and 65504"),
+          std::pair(light.nan, "NaN in a channel, and counted nowhere else"),
+          std::pair(light.infinite, "infinite in a channel, and counted nowhere else"),
           std::pair(light.transparent, "wholly transparent")})
         if (count != 0) answer(fmt::format("{:>13.2f} % {}", share(count), name));
     if (light.above_zero.empty()) return;
@@ -119,11 +142,12 @@ int run(const std::vector<std::string>& paths, bool is_json) {
         if (!frame) return fail(frame.error());
         for (const std::string& warning : frame->warnings)
             warn(fmt::format("{}: {}", darkroom::printable(path), warning));
-        const Light light = light_of(*frame);
+        const darkroom::Result<Light> light = light_of(path, *frame);
+        if (!light) return fail(light.error());
         if (is_json)
-            all.push_back(document_of(path, *frame, light));
+            all.push_back(document_of(path, *frame, *light));
         else
-            tell_of(path, *frame, light);
+            tell_of(path, *frame, *light);
     }
     if (is_json) answer((paths.size() > 1 ? all : all.elements().front()).dump(2));
     return exit_ok;
