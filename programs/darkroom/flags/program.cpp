@@ -231,6 +231,7 @@ std::vector<Command> add_commands(const CommandRow& row, const CommandHost& host
 }
 
 int run_program(int argc, char** argv, const AddCommands& add_commands) {
+    hold_standard_streams();
     darkroom::AtomicPath::remove_on_signals();
     survive_size_limits();
     end_with_task();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "report.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -70,6 +71,12 @@ void tell(std::string_view line) {
 void survive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 void survive_size_limits() { std::signal(SIGXFSZ, SIG_IGN); }
+
+void hold_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF)
+            static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+}
 
 int end_output(int code) {
     errno = 0;

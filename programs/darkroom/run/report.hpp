@@ -33,6 +33,9 @@ void tell(std::string_view line);
 void survive_closed_pipes();
 /// A file beyond the limit of the shell or of a batch system (`ulimit -f`) is an error of writing it, not the end.
 void survive_size_limits();
+/// A standard stream that came closed is one that cannot be read or written: the first file that is opened would take
+/// its place, and have our lines.
+void hold_standard_streams();
 /// The exit code `code`; where standard output could not be written (a full disk), a line says so and it is another.
 [[nodiscard]] int end_output(int code);
 /// "darkroom: <text>" on one line of standard error, where that was asked for.
