@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tables on the command line: `darkroom lut`, and tables as values of looks.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -176,6 +178,77 @@ TEST_F(CliLut, ConvertedTablesAreTheSame) {
     ASSERT_TRUE(cube) << cube.error().text;
     EXPECT_EQ(cube->file.table.size, 16u);
     EXPECT_EQ(cube->file.table.cube[3], 17.0f / 255);
+}
+
+/// Steps of CLF, in 32 bits: curves of five entries, and a matrix.
+std::string clf_of(const std::string& steps) {
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ProcessList compCLFversion=\"3\" id=\"a\">\n" + steps +
+           "</ProcessList>\n";
+}
+std::string clf_curve(const std::string& entries) {
+    return "<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"5 1\">" + entries + "</Array></LUT1D>\n";
+}
+const std::string clf_matrix =
+    "<Matrix inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"3 3\">0.8 0.1 0.1 0.2 0.7 0.1 0 0.3 "
+    "0.7</Array></Matrix>\n";
+
+TEST_F(CliLut, WhatATableIsNotIsToldWhereItIsUsed) {
+    // A curve of corners behind a matrix falls between the entries of every cube; a matrix alone has no end.
+    write("bent.clf", clf_of(clf_matrix + clf_curve("0 0.9 0.1 0.9 1")));
+    write("endless.clf", clf_of(clf_matrix));
+    write("exact.clf", clf_of(clf_curve("0 0.4 0.7 0.9 1")));
+    const auto told = [&](const std::string& table) {
+        const Outcome outcome =
+            run({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path(table), "--jobs", "1"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.err;
+    };
+    EXPECT_EQ(told("exact.clf"), "");
+    EXPECT_EQ(told("endless.clf"), "darkroom: warning: " + path("endless.clf") +
+                                       ": its operations go on below 0 and above 1, where it is held at its ends\n");
+    const std::string bent = told("bent.clf");
+    EXPECT_TRUE(
+        bent.starts_with("darkroom: warning: " + path("bent.clf") + ": its operations are sampled, and up to 0.0"))
+        << bent;
+    EXPECT_EQ(std::ranges::count(bent, '\n'), 1) << bent;
+    // The same of a look that names it, and of the table alone.
+    write("bent.toml", "format = 1\n[post_process]\nlut = \"bent.clf\"\n");
+    EXPECT_EQ(run({"develop", path("frame.exr"), "-o", path("out.png"), "--look", path("bent.toml")}).err, bent);
+    for (const std::string name : {"bent.toml", "bent.clf"}) {
+        const auto document = nlohmann::json::parse(run({"info", path(name), "--json"}).out, nullptr, false);
+        ASSERT_TRUE(document.contains("warnings")) << document;
+        EXPECT_NE(bent.find(document.at("warnings").at(0).get<std::string>()), std::string::npos) << document;
+    }
+    EXPECT_EQ(run({"lut", "convert", path("bent.clf"), "-o", path("bent.cube")}).err, bent);
+}
+
+TEST_F(CliLut, BitsOfA3dlAreSaidByTheFileOrByHand) {
+    std::string entries = "0 341 682 1023\n";
+    for (int r = 0; r < 4; ++r)
+        for (int g = 0; g < 4; ++g)
+            for (int b = 0; b < 4; ++b) entries += fmt::format("{} {} {}\n", r * 273, g * 273, b * 273);
+    write("dark.3dl", entries);
+    write("said.3dl", "3DMESH\nMesh 2 12\n" + entries);
+    const auto greatest = [&](const std::string& name) {
+        const Result<FoundTable> found = read_table_file(path(name));
+        EXPECT_TRUE(found) << found.error().text;
+        return found ? found->file.table.cube.back() : -1;
+    };
+    EXPECT_FLOAT_EQ(greatest("dark.3dl"), 819.0f / 1023) << "as OpenColorIO has it";
+    EXPECT_FLOAT_EQ(greatest("said.3dl"), 819.0f / 4095);
+    const std::string warning = "its largest number is 819: it is taken as of 10 bits";
+    expect_done({"lut", "convert", path("dark.3dl"), "-o", path("a.cube")}, warning);
+    EXPECT_FLOAT_EQ(greatest("a.cube"), 819.0f / 1023);
+    expect_done({"lut", "convert", path("dark.3dl"), "-o", path("a.cube"), "--bits", "12"});
+    EXPECT_FLOAT_EQ(greatest("a.cube"), 819.0f / 4095);
+    expect_done({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("said.3dl")});
+    expect_done({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("dark.3dl")}, warning);
+    const Outcome told = run({"info", path("said.3dl")});
+    EXPECT_NE(told.out.find("Its numbers are taken as of 12 bits, of which the largest is 819 of 4095"),
+              std::string::npos)
+        << told.out;
+    expect_refused({"lut", "convert", path("half.cube"), "-o", path("b.cube"), "--bits", "12"}, 1, ".3dl alone");
+    expect_refused({"lut", "convert", path("dark.3dl"), "-o", path("b.cube"), "--bits", "40"}, 1, "[8, 16]");
 }
 
 TEST_F(CliLut, WhatCannotBeDoneIsOneLine) {

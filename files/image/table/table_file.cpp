@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <sstream>
+#include <tuple>
 
 #include "core/files.hpp"
 #include "core/text/lower.hpp"
@@ -68,13 +72,77 @@ bool goes_on(const ColorTable& table, const ColorChain& chain) {
     return false;
 }
 
-Result<FoundTable> read_chain(const fs::path& path, const std::string& extension) {
+/// Lines with something in them that is no comment, as their words in lower case.
+std::vector<std::vector<std::string>> words_of(std::span<const std::byte> file) {
+    std::istringstream text(std::string(reinterpret_cast<const char*>(file.data()), file.size()));
+    std::vector<std::vector<std::string>> out;
+    for (std::string line; std::getline(text, line);) {
+        std::istringstream words(lower(line));
+        std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+        if (!found.empty() && !found.front().starts_with('#')) out.push_back(std::move(found));
+    }
+    return out;
+}
+
+/// Autodesk's Lustre says the bits of its numbers in a line "Mesh 5 12"; others say nothing, and OpenColorIO takes the
+/// fewest of 8, 10, 12, 14 and 16 that the largest number can be of.
+void settle_bits(std::span<const std::byte> file, std::optional<int> bits, FoundTable& out) {
+    std::vector<float>& entries = out.file.table.cube;
+    double largest = 0;
+    bool is_said = bits.has_value();
+    for (const std::vector<std::string>& words : words_of(file)) {
+        int number = 0;
+        const auto read = [&](const std::string& word) {
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+            return error == std::errc() && end == word.data() + word.size();
+        };
+        if (words.size() != 3) continue;
+        if (words[0] == "mesh" && read(words[2]) && number >= 8 && number <= 16 && !bits) {
+            bits = number;
+            is_said = true;
+        } else if (std::ranges::all_of(words, read)) {
+            for (const std::string& word : words)
+                if (read(word)) largest = std::max(largest, static_cast<double>(number));
+        }
+    }
+    const double greatest = entries.empty() ? 0 : *std::ranges::max_element(entries);
+    if (!(largest > 0) || !(greatest > 0)) return;
+    const auto guessed = static_cast<int>(std::lround(std::log2(largest / greatest + 1)));
+    const auto most = [](int of) { return std::exp2(of) - 1; };
+    const auto scale = static_cast<float>(most(guessed) / most(bits.value_or(guessed)));
+    for (float& entry : entries) entry *= scale;
+    const int taken = bits.value_or(guessed);
+    out.file.comments.push_back(fmt::format("Its numbers are taken as of {} bits, of which the largest is {} of {}",
+                                            taken, largest, most(taken)));
+    // A table that reaches nine tenths of white is of the bits that it seems to be of.
+    if (!is_said && largest < 0.9 * most(guessed))
+        out.warnings.push_back(
+            fmt::format("its largest number is {}: it is taken as of {} bits, and may be of more; "
+                        "`darkroom lut convert --bits` says so",
+                        largest, guessed));
+}
+
+/// Has the prelut of a .csp file a curve of more than two points?
+bool has_curved_prelut(std::span<const std::byte> file) {
+    const auto lines = words_of(file);
+    auto line = lines.begin() + std::min<std::ptrdiff_t>(2, std::ssize(lines));
+    if (line != lines.end() && line->front() == "begin") {
+        while (line != lines.end() && line->front() != "end") ++line;
+        if (line != lines.end()) ++line;
+    }
+    // Of each channel the number of points, their inputs, and their outputs.
+    for (int channel = 0; channel < 3 && lines.end() - line > 2; ++channel, line += 3)
+        if (line->front() != "0" && line->front() != "2") return true;
+    return false;
+}
+
+Result<FoundTable> read_chain(const fs::path& path, const std::string& extension, std::optional<int> bits) {
     const std::string shown = printable(path.string());
     const auto refuse = [&](const Error& error) {
         return failure(Error{error.fault, fmt::format("{}: {}", shown, error.text)});
     };
     // What OpenColorIO makes of them it bounds itself: 129 a side of a cube, 2^20 entries of a 1D table.
-    DARKROOM_TRY(read_file(path, {.max_size = max_chain_file}));
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> file, read_file(path, {.max_size = max_chain_file}));
     const Result<const ColorChains*> chains = color_chains();
     if (!chains) return refuse(chains.error());
     const Result<std::unique_ptr<ColorChain>> chain = (*chains)->open(path);
@@ -86,8 +154,23 @@ Result<FoundTable> read_chain(const fs::path& path, const std::string& extension
             return refuse({Fault::User, "its operations make colours that are not finite"});
     FoundTable out{.file = {.table = std::move(*table)}, .format = extension};
     out.error = worst_error(out.file.table, **chain);
-    if (goes_on(out.file.table, **chain))
+    // Half a code of 8 bits.
+    if (constexpr double seen = 0.5 / 255; *out.error > seen)
+        out.warnings.push_back(fmt::format("its operations are sampled, and up to {:.3g} off", *out.error));
+    if (goes_on(out.file.table, **chain)) {
         out.file.comments.emplace_back("Inputs beyond those of the table are held at its ends; its operations go on");
+        const ColorTable& of = out.file.table;
+        const auto& [least, most] =
+            of.shaper_size > 0 ? std::tie(of.shaper_min, of.shaper_max) : std::tie(of.min, of.max);
+        out.warnings.push_back(
+            fmt::format("its operations go on below {:g} and above {:g}, where it is held at its ends",
+                        *std::ranges::max_element(least), *std::ranges::min_element(most)));
+    }
+    if (extension == ".3dl") settle_bits(file, bits, out);
+    if (extension == ".csp" && has_curved_prelut(file))
+        out.file.comments.emplace_back(
+            "Its prelut is a smooth curve through its points, as OpenColorIO takes it; some programs draw straight "
+            "lines");
     return out;
 }
 
@@ -122,13 +205,15 @@ std::vector<std::string> table_extensions() {
 
 bool is_table_name(const fs::path& path) { return std::ranges::count(table_extensions(), extension_of(path)) > 0; }
 
-Result<FoundTable> read_table_file(const fs::path& path) {
+Result<FoundTable> read_table_file(const fs::path& path, std::optional<int> bits) {
     const std::string extension = extension_of(path);
+    if (bits && extension != ".3dl")
+        return user_error(fmt::format("{}: bits are said of the numbers of .3dl alone", printable(path.string())));
     if (extension == ".cube") {
         DARKROOM_TRY_VALUE(TableFile file, read_cube(path));
         return FoundTable{.file = std::move(file), .format = extension};
     }
-    if (is_table_name(path)) return read_chain(path, extension);
+    if (is_table_name(path)) return read_chain(path, extension, bits);
     return read_picture_table(path);
 }
 

@@ -252,8 +252,12 @@ darkroom::LookOptions LookFlags::options(std::vector<std::string>* warnings) con
             .is_scene = file.empty() || is_scene_name(file),
             .allows_custom_effects = !has_no_custom_effects_,
             .load_resource = [read = read_](const std::filesystem::path& path, darkroom::FileUse use) {
-                read->add(path);
-                return darkroom::load_resource_file(path, use);
+                const bool is_new = read->add(path);
+                std::vector<std::string> told;
+                Result<darkroom::ResourceData> found = darkroom::load_resource_file(path, use, told);
+                for (const std::string& line : told)
+                    if (is_new) warn(line);
+                return found;
             }};
 }
 

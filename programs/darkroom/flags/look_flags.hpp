@@ -22,9 +22,10 @@ namespace app {
 /// From any thread: a window reads looks while it draws.
 class ReadFiles {
   public:
-    void add(const std::filesystem::path& file) {
+    /// False: it was read before.
+    bool add(const std::filesystem::path& file) {
         const std::lock_guard lock(adding_);
-        files_.insert(file);
+        return files_.insert(file).second;
     }
     [[nodiscard]] std::vector<std::filesystem::path> all() const {
         const std::lock_guard lock(adding_);

@@ -242,6 +242,7 @@ Result<Json> table(const std::filesystem::path& path) {
             part_of(table.shaper_size, table.shaper_min, table.shaper_max, table.shaper);
     if (table.size > 0) out["table_3d"] = part_of(table.size, table.min, table.max, table.cube);
     if (found->error) out["largest_error"] = *found->error;
+    if (!found->warnings.empty()) out["warnings"] = found->warnings;
     if (!found->file.comments.empty()) out["comments"] = found->file.comments;
     return out;
 }

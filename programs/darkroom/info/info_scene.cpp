@@ -316,7 +316,11 @@ Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects,
                                                                        {.warnings = &warnings,
                                                                         .is_scene = is_scene,
                                                                         .allows_custom_effects = allows_custom_effects,
-                                                                        .load_resource = darkroom::load_resource_file,
+                                                                        .load_resource =
+                                                                            [&](const auto& named, auto use) {
+                                                                                return darkroom::load_resource_file(
+                                                                                    named, use, warnings);
+                                                                            },
                                                                         .folder = path.parent_path()}));
     if (is_scene)
         out["look"] = look_of(look);

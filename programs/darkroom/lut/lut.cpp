@@ -51,9 +51,10 @@ CommandFlags add(CommandFlags lut, const char* name, const char* help, Output& o
     return command;
 }
 
-Result<> convert(const std::string& from, const Output& to) {
+Result<> convert(const std::string& from, const Output& to, std::optional<int> bits) {
     DARKROOM_TRY(check(to, {from}));
-    DARKROOM_TRY_VALUE(darkroom::FoundTable found, darkroom::read_table_file(from));
+    DARKROOM_TRY_VALUE(darkroom::FoundTable found, darkroom::read_table_file(from, bits));
+    for (const std::string& line : found.warnings) warn(fmt::format("{}: {}", printable(from), line));
     darkroom::TableFile& file = found.file;
     if (file.title.empty()) file.title = std::filesystem::path(from).stem().string();
     if (found.error)
@@ -66,6 +67,7 @@ Command add_convert(CommandFlags lut) {
     struct Options {
         std::string from;
         Output to;
+        NumberFlag bits{"--bits", {.least = 8, .most = 16, .is_whole = true}};
     };
     const auto options = std::make_shared<Options>();
     const CommandFlags command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
@@ -73,8 +75,11 @@ Command add_convert(CommandFlags lut) {
         .add_option("FILE", options->from,
                     fmt::format("A table: {}, a strip or a HaldCLUT", fmt::join(darkroom::table_extensions(), " ")))
         .required();
+    options->bits.add_to(command, "Bits of the numbers of a .3dl file, which need not say").type_name("N");
     return {command, [options] {
-                const Result<> done = convert(options->from, options->to);
+                std::optional<int> bits;
+                if (const Result<> done = options->bits.read_to(bits); !done) return fail(done.error());
+                const Result<> done = convert(options->from, options->to, bits);
                 return done ? exit_ok : fail(done.error());
             }};
 }
