@@ -28,7 +28,10 @@ Picture picture_of(const LayerSamples& samples, const FilePart& part) {
 
 Result<ComparablePicture> read_comparable(const std::filesystem::path& path) {
     DARKROOM_TRY_VALUE(LayerFile file, LayerFile::open(path));
-    return read_comparable(file);
+    Result<ComparablePicture> out = read_comparable(file);
+    const std::string place = path.string() + ": ";
+    if (!out && !out.error().text.starts_with(place)) out.error().text.insert(0, place);
+    return out;
 }
 
 Result<ComparablePicture> read_comparable(LayerFile& file) {
