@@ -3,6 +3,8 @@
 // records itself, because vulkano's automatic one must know of every command.
 // Its crates are `darkroom` (share/darkroom/bindings/rust), `vulkano` and `ash` 0.38, whose types vulkano's handles are.
 
+#![allow(unsafe_op_in_unsafe_fn)] // Of Rust 2024: what is unsafe here is unsafe as a whole.
+
 use ash::vk::{self, Handle};
 use darkroom::{sys, AdoptDesc, CompileDesc, Composer, EntryDesc, Frame, ImageUse};
 use std::{ffi::c_void, sync::Arc};

@@ -2,6 +2,8 @@
 // Darkroom in a host in Rust that draws with wgpu 30 on Vulkan: three pixels of light, developed between wgpu's own commands.
 // Its crates are `darkroom` (share/darkroom/bindings/rust), `wgpu` with the feature `vulkan`, `ash` 0.38 and `pollster`.
 
+#![allow(unsafe_op_in_unsafe_fn)] // Of Rust 2024: what is unsafe here is unsafe as a whole.
+
 use ash::vk::{self, Handle};
 use darkroom::{sys, AdoptDesc, CompileDesc, Composer, Device, EntryDesc, Frame, Image, ImageUse};
 use std::ffi::c_void;

@@ -113,11 +113,12 @@ TEST_F(CliFarm, TasksThatNothingSubmittedAreHeldAgainstTheFirst) {
     fs::remove_all(path("out/shot.farm"));
     const Outcome unknown = run_lines(task + "0-2 -- --exposure 3");
     EXPECT_EQ(unknown.code, 1);
-    EXPECT_EQ(
-        unknown.err,
-        "darkroom: out/shot.0002.png: is older than out/shot.farm/job.json: remove it, `touch` it if it is one of "
-        "these pictures, " +
-            elsewhere);
+    EXPECT_EQ(unknown.err,
+              "darkroom: out/shot.farm: 1 picture is there, from shot.0002.png on, and no record says of which look; "
+              "remove it, " +
+                  elsewhere);
+    EXPECT_EQ(run_lines(task + "0 -- --exposure 3").err, unknown.err) << "nor in another chunk";
+    EXPECT_FALSE(fs::exists(path("out/shot.farm")));
 }
 
 // Slurm may begin a task before the job is written down, which the task must not do in its place.

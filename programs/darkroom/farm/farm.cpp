@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
@@ -40,6 +41,28 @@ fs::path farm_folder(const fs::path& first, const fs::path& other) {
 }
 
 }  // namespace
+
+Result<> check_unknown_pictures(const FarmWork& work) {
+    std::set<fs::path> found;
+    for (const FarmFrame& frame : work.frames)
+        if (is_there(frame.picture)) found.insert(frame.picture);
+    // Of other chunks, too.
+    const fs::path folder = work.folder.has_parent_path() ? work.folder.parent_path() : fs::path(".");
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const fs::path name = entry->path().filename();
+        const std::optional<long long> number = darkroom::frame_number(name);
+        if (!number) continue;
+        for (const fs::path& picture : work.names.pictures(*number))
+            if (picture.filename() == name && is_there(picture)) found.insert(picture);
+    }
+    if (found.empty()) return {};
+    return user_error(
+        fmt::format("{}: {} picture{} there, from {} on, and no record says of which look; remove {}, or write "
+                    "elsewhere with -o",
+                    printable(work.folder.string()), found.size(), found.size() == 1 ? " is" : "s are",
+                    printable(found.begin()->filename().string()), found.size() == 1 ? "it" : "them"));
+}
 
 void FarmFlags::add_to(CommandFlags command, const std::string& frames_doc) {
     command.add_option("INPUT", input_, "A sequence (shot.%04d.exr or shot.####.exr), or a scene or a model")

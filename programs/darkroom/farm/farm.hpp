@@ -35,6 +35,9 @@ struct FarmWork {
     bool is_range = true;          ///< false: between the first and the last there are some that are not asked for
 };
 
+/// Where nothing was submitted yet, pictures of these names were made with nobody knows which look.
+[[nodiscard]] darkroom::Result<> check_unknown_pictures(const FarmWork& work);
+
 class FarmFlags {
   public:
     void add_to(CommandFlags command, const std::string& frames_doc);

@@ -161,6 +161,9 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
         if (is_there(frame.picture)) job.done.insert(frame.number);
     }
     DARKROOM_TRY_VALUE(const std::optional<FarmJob> last, read_job(work.folder));
+    if (!last && !job.done.empty())
+        warn(fmt::format("{}: {} pictures are there, and no record says of which look: they count as made",
+                         printable(work.folder.string()), job.done.size()));
     if (last) DARKROOM_TRY(check_arguments(work.folder, *last, job.arguments));
     if (last && !job.done.empty()) DARKROOM_TRY(check_inputs(work.folder, *last, job.inputs));
     const std::vector<std::string> chunks = chunks_of(work, job.done, chunk);

@@ -149,26 +149,18 @@ Result<bool> has_pictures(const fs::path& folder) {
     });
 }
 
-/// Pictures that are older than the job were made by something else, with another look perhaps.
-Result<> check_pictures(const FarmWork& work) {
-    std::error_code error;
-    const fs::file_time_type job = fs::last_write_time(job_path(work.folder), error);
-    for (const FarmFrame& frame : work.frames) {
-        if (error || !is_there(frame.picture)) continue;
-        const fs::file_time_type made = fs::last_write_time(frame.picture, error);
-        if (!error && made < job)
-            return darkroom::user_error(
-                fmt::format("{}: is older than {}: remove it, `touch` it if it is one of these pictures, or write "
-                            "elsewhere with -o",
-                            printable(frame.picture.string()), printable(job_path(work.folder).string())));
-    }
-    return {};
-}
-
 /// What a job of these arguments was submitted with must be what its tasks read. Where nothing was submitted, the first
 /// task writes what the others are held against, as long as a picture of theirs is there.
 Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
-    DARKROOM_TRY_VALUE(const std::optional<FarmJob> job, read_job(work.folder));
+    DARKROOM_TRY_VALUE(std::optional<FarmJob> job, read_job(work.folder));
+    if (!job && job_name().empty()) {
+        // Those of another task that has just begun have its job beside them by now.
+        const Result<> unknown = check_unknown_pictures(work);
+        if (!unknown) {
+            DARKROOM_TRY_VALUE(job, read_job(work.folder));
+            if (!job) return unknown;
+        }
+    }
     // `farm slurm` writes it when the job is in the queue, where a task may begin before.
     if (!job && !job_name().empty()) return {};
     const bool is_submitted = job && !job->id.empty();
@@ -178,13 +170,12 @@ Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const
     if (job) {
         Result<> same = check_arguments(work.folder, *job, flags.task());
         if (same) same = check_inputs(work.folder, *job, inputs);
-        if (same) return check_pictures(work);
+        if (same) return {};
         DARKROOM_TRY_VALUE(const bool stays, has_pictures(work.folder));
         if (stays) return same;
     }
     DARKROOM_TRY(make_folder(work.folder));
-    DARKROOM_TRY(write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names}));
-    return check_pictures(work);
+    return write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names});
 }
 
 int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {

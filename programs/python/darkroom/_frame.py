@@ -276,7 +276,10 @@ def as_frame(given):
         unknown = sorted(set(given) - known - {"picture"})
         if unknown:
             near = nearest(unknown[0], known) or ":"
-            raise Error(f"frame: no layer '{unknown[0]}'{near} allowed is {', '.join(sorted(known))}")
+            raise Error(
+                f"frame: no layer '{unknown[0]}'{near} allowed is {', '.join(sorted(known))}; values of effects are set "
+                "by a look or a Stack"
+            )
         return Frame(**{name: layer for name, layer in given.items() if name in known})
     return Frame(given)
 
