@@ -39,7 +39,7 @@ frames = {
     "interior": "interior",
     "interior_near": "interior --target 0.45,0.88,-0.5 --distance 1.5 --yaw -36 --pitch 6 --fov 26",
     "interior_large": "interior --samples 1 --size 1920x1080",
-    "pan": "temporal/pan --fps 24 --time 1",
+    "pan": "../proof/lab/scenes/pan --fps 24 --time 1",
     "street": "street",
 }
 
