@@ -154,7 +154,7 @@ TEST_F(CliBombs, Models) {
         b.primitive()["targets"] = repeat(empty, 20'000);
         b.json["nodes"] = repeat(b.json["nodes"][0], 5000);
     });
-    expect("targets", "numbers of 4 bytes", [&](Bomb& b) {
+    expect("targets", "vertices of morph targets of 24 bytes", [&](Bomb& b) {
         const std::size_t positions = b.zeros(60'000, "VEC3");
         b.primitive() = {{"attributes", {{"POSITION", positions}}},
                          {"targets", repeat({{"POSITION", positions}}, 2000)}};
