@@ -83,7 +83,7 @@ const EffectInfo& effect_info(const AnamorphicStreaks&) {
         .files = embedded_files("anamorphic_streaks"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .flat = {.documented = 56, .scene_linear = 65},
+        .flat = {.documented = 61, .scene_linear = 65},
         .build = build,
         .reference = anamorphic_streaks_reference,
         .is_identity = [](const void* parameters) { return streaks_of(parameters).intensity == 0.0f; },

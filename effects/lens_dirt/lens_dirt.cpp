@@ -110,7 +110,7 @@ const EffectInfo& effect_info(const LensDirt&) {
         .files = embedded_files("lens_dirt"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .flat = {.documented = 58, .scene_linear = 66},
+        .flat = {.documented = 63, .scene_linear = 66},
         .build = build,
         .reference = lens_dirt_reference,
         .is_identity = [](const void* parameters) { return dirt_of(parameters).intensity == 0.0f; },

@@ -70,7 +70,7 @@ const EffectInfo& effect_info(const LensFlare&) {
         .files = embedded_files("lens_flare"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .flat = {.documented = 57, .scene_linear = 61},
+        .flat = {.documented = 62, .scene_linear = 61},
         .build = build,
         .reference = lens_flare_reference,
         .is_identity =
