@@ -232,6 +232,11 @@ class Window:
     def xdotool(self, *words):
         return self.maker.run("xdotool", *words, env=self.environment)
 
+    def tell(self, command):
+        """To the console."""
+        self.viewer.stdin.write(command + "\n")
+        self.viewer.stdin.flush()
+
     def count(self, text):
         return sum(text in line for line in self.lines)
 
@@ -250,9 +255,11 @@ class Window:
         return self.wait_for(text, before)
 
     def frame(self):
-        """One that has seen what the mouse did: nothing is ever undone here."""
+        """One that has seen what the mouse did."""
         for _ in range(2):
-            self.key("ctrl+shift+z", "nothing to redo")
+            before = self.count("frames: ")
+            self.tell("frames")
+            self.wait_for("frames: ", before)
 
     def point(self, x, y):
         """At a part of the window's width and height."""
@@ -267,8 +274,7 @@ class Window:
     def place(self, widget):
         """Left, top, right and bottom: the console knows, once it is drawn."""
         for _ in range(600):
-            self.viewer.stdin.write(f"places {widget}\n")
-            self.viewer.stdin.flush()
+            self.tell(f"places {widget}")
             time.sleep(0.1)
             if self.count(f"place {widget} "):
                 break
