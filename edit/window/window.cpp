@@ -198,7 +198,14 @@ const std::vector<KeyPress>& Window::pressed() const { return state_->pressed; }
 bool Window::is_down(int key) const { return glfwGetKey(handle(), key) == GLFW_PRESS; }
 bool Window::is_held(int key) const { return is_down(key) && !state_->shortcuts.contains(key); }
 bool Window::is_button_down(int button) const { return glfwGetMouseButton(handle(), button) == GLFW_PRESS; }
-std::array<double, 2> Window::mouse() const { return state_->cursor; }
+std::array<double, 2> Window::mouse() const {
+    // Places are of the desktop's unit, which Wayland has several pixels for.
+    int width = 0, height = 0;
+    glfwGetWindowSize(handle(), &width, &height);
+    const VkExtent2D pixels = extent();
+    if (width <= 0 || height <= 0) return state_->cursor;
+    return {state_->cursor[0] * pixels.width / width, state_->cursor[1] * pixels.height / height};
+}
 std::array<double, 2> Window::mouse_moved() const { return state_->moved; }
 double Window::wheel() const { return state_->wheel; }
 GLFWwindow* Window::handle() const { return state_->window.get(); }
