@@ -39,9 +39,10 @@ void LookReader::read_top(const toml::table& file) {
     for (const auto& [key, node] : file)
         if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())
             report(key.source().begin, Weight::Slip,
-                   fmt::format(
-                       "unknown key '{}'{}", printable(key.str()),
-                       is_flat_key(key.str()) ? ": it belongs below [post_process]" : suggestion(key.str(), names)));
+                   fmt::format("unknown key '{}'{}", printable(key.str()),
+                               problems_.size() < max_suggestions && is_flat_key(key.str())
+                                   ? ": it belongs below [post_process]"
+                                   : suggestion(key.str(), names)));
     const toml::node* const format = file.get("format");
     if (format == nullptr) return;
     const auto* const number = format->as_integer();
