@@ -85,8 +85,10 @@ bool is_gain_map(Bytes picture) {
 }
 
 std::string left_out_of_jpeg(Bytes file) {
+    // Cameras write two or three; each that a list names may be as long as the file.
+    constexpr std::size_t max_looked_into = 8;
     const std::vector<Bytes> further = further_pictures(file);
-    if (std::ranges::any_of(further, is_gain_map))
+    if (std::ranges::any_of(std::span(further).first(std::min(further.size(), max_looked_into)), is_gain_map))
         return "has a gain map for light beyond white, which is not applied: the picture without it is read";
     return further.empty() ? "" : fmt::format("has {} pictures: the first is read", further.size() + 1);
 }
