@@ -123,6 +123,7 @@ class BuildPackage(build_py):
         to = pathlib.Path(self.build_lib) / "darkroom"
         # A folder that was built in before may hold the module of another interpreter, and files that are gone.
         known = {file.name for file in (root / "programs/python/darkroom").iterdir() if file.is_file()}
+        known |= {"looks"} | {file.name for file in (root / "looks").iterdir()}
         known |= {"__init__.pyi", "_engine" + sysconfig.get_config_var("EXT_SUFFIX")}
         shutil.rmtree(to, ignore_errors=True)
         shutil.copytree(package(), to, ignore=lambda folder, names: set(names) - known)

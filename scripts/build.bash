@@ -44,6 +44,22 @@ refuse_old_packages() {
     [[ -z $old ]] || die "too old here: $old"
 }
 
+# Tells how far apt is, which says so among its lines; the rest goes to the log. A line every 20 percent.
+tell_apt() {
+    local line kind percent said=
+    while IFS= read -r line; do
+        case $line in
+            dlstatus:*) kind=downloading ;;
+            pmstatus:*) kind=unpacking ;;
+            *) printf '%s\n' "$line" >>"$log" && continue ;;
+        esac
+        IFS=: read -r _ _ percent _ <<<"$line"
+        percent=$((${percent%%.*} / 20 * 20))
+        [[ $kind$percent == "$said" ]] || say "packages: $kind, $percent %"
+        said=$kind$percent
+    done
+}
+
 # Installs what is missing, but not unasked. Root without a terminal, as in containers, is not asked, since nobody is there
 # to answer; another user without one gets the command to run.
 install_packages() {
@@ -78,7 +94,8 @@ install_packages() {
     "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
     refuse_old_packages
     # Word by word: $missing is a list.
-    "${apt[@]}" install -y --no-install-recommends $missing >>"$log" 2>&1 || failed "installing packages"
+    "${apt[@]}" -o APT::Status-Fd=1 install -y --no-install-recommends $missing 2>&1 | tell_apt ||
+        failed "installing packages"
 }
 
 # What the caller has in DARKROOM_OPTIONAL_PACKAGES, as far as root can have it: what needs one of them is skipped without.

@@ -141,6 +141,12 @@ TEST(Look, UnknownKeysAreWarnedOfAndStrictlyRefused) {
     EXPECT_TRUE(contains(error_of(text, true), "not_a_section"));
     EXPECT_EQ(error_of("bloom_threshold = 2\n", true),
               "a.toml:1:1: unknown key 'bloom_threshold': it belongs below [post_process]");
+    EXPECT_EQ(error_of("tonemap = \"agx\"\n", true),
+              "a.toml:1:1: unknown key 'tonemap', did you mean 'tonemap_curve' below [post_process]?");
+    EXPECT_TRUE(
+        error_of("[post_process]\ntonemap = \"agx\"\n", true)
+            .starts_with("a.toml:2:1: unknown key 'tonemap' = \"agx\", did you mean 'tonemap_curve', which takes aces"))
+        << error_of("[post_process]\ntonemap = \"agx\"\n", true);
     // To look a name up is slow, and a file may hold very many: only the first 256 slips, by their names, have it.
     std::string many = "vignette_intensity = 1\n";
     for (int i = 0; i < 300; ++i) many += fmt::format("nothing_{} = 1\n", i);

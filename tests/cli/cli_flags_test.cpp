@@ -70,6 +70,17 @@ TEST_F(CliFlags, AnEmptyTextIsNoValue) {
     expect_refused(command("develop", {"--exposure", ""}), 1, "--exposure: '' is not a number, allowed is");
 }
 
+TEST_F(CliFlags, AFlagIsNoValueOfTheOneBefore) {
+    // Once where the one that is taken along was needed, and once where not.
+    expect_refused({"develop", "a.exr", "--bloom-intensity", "--output", "a.png"}, 1,
+                   "darkroom: --bloom-intensity: one value is needed, before '--output'\n");
+    expect_refused({"develop", "a.exr", "-o", "a.png", "--size", "--exposure=2"}, 1,
+                   "darkroom: --size: one value is needed, before '--exposure=2'\n");
+    expect_refused({"develop", "a.exr"}, 1, "darkroom: develop: -o OUT is needed: The picture: ");
+    expect_refused({"develop"}, 1, "darkroom: develop: INPUT is needed: Frames or pictures");
+    expect_refused({"develop", "a.exr", "--exposre", "2"}, 1, "did you mean '--exposure'?\n");
+}
+
 TEST_F(CliFlags, WhatStandsTwiceOrIsNoSwitchIsTold) {
     for (const std::string flag : {"--output", "--size", "--device"})
         expect_refused(

@@ -187,7 +187,7 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({"develop", frame, "-o", out, "--chromatic-aberration-intensity", "1"}, 1,
                    "did you mean '--chromatic-aberration'?");
     expect_refused({"develop"}, 1, "INPUT");
-    expect_refused({"develop", frame}, 1, "--output");
+    expect_refused({"develop", frame}, 1, "-o OUT is needed");
     expect_refused({"develop", path("none.exr"), "-o", out}, 1, "none.exr");
     expect_refused({"develop", path(""), "-o", out}, 1, "folder");
     expect_refused({"develop", write("text.exr", "hello"), "-o", out}, 1, "text.exr");

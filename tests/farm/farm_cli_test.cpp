@@ -168,7 +168,7 @@ TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
     write(in(1), "no picture");
     const Outcome task = run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0-2");
     EXPECT_EQ(task.code, 1);
-    EXPECT_TRUE(task.err.ends_with("darkroom: frames 1 failed in 4 tries: out/shot.farm/0-2.json\n")) << task.err;
+    EXPECT_TRUE(task.err.ends_with("darkroom: frame 1 failed in 4 tries: out/shot.farm/0-2.json\n")) << task.err;
     EXPECT_EQ(record("0-2")["state"], "failed");
     EXPECT_EQ(record("0-2")["done"], json::parse("[[0,0],[2,2]]"));
     const std::string told = run_lines("darkroom farm status out").out;

@@ -43,6 +43,7 @@ STUB
 cat >"$work/bin/apt-get" <<'STUB'
 #!/usr/bin/env bash
 echo "apt-get $*" >>"$STUB_LOG"
+[[ $* != *Status-Fd=1* ]] || printf '%s\n' dlstatus:1:45.5:Retrieving dlstatus:2:59:Retrieving 'Get:1 libfmt-dev' pmstatus:libfmt-dev:61.1:Unpacking
 STUB
 cat >"$work/bin/sudo" <<'STUB'
 #!/usr/bin/env bash
@@ -182,6 +183,7 @@ too_old() {
 STUB_LACKS=libfmt-dev "$tree/darkroom" --yes --packages >"$work/out" 2>"$work/said" || fail "--packages: $(<"$work/said")"
 grep -qE '^apt-get .*install -y --no-install-recommends libfmt-dev$' "$STUB_LOG" && ! grep -q -- --build "$STUB_LOG" ||
     fail "--packages installs and builds nothing"
+diff <(printf 'darkroom: packages: %s %%\n' 'downloading, 40' 'unpacking, 60') <(grep % "$work/said") || fail "how far apt is"
 too_old 'cmake 3.18.4-2' 'cmake 3.18.4-2 (3.25 is needed)'
 too_old 'g++ 4:11.2.0-1' 'g++ 4:11.2.0-1 (4:12 is needed)'
 too_old 'libfmt-dev 8.1.1+ds1-2' 'libfmt-dev 8.1.1+ds1-2 (9 is needed)' libfmt-dev

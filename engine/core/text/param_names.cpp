@@ -77,6 +77,10 @@ std::string nearest(std::string_view wrong, std::span<const std::string> names) 
             best = name;
         }
     }
+    // "tonemap" of "tonemap_curve": the first that goes on behind it.
+    for (const std::string& name : names)
+        if (best.empty() && wrong.size() > 1 && name.starts_with(wrong) && name.find_first_of("_-", 2) == wrong.size())
+            best = name;
     return std::string(best);
 }
 

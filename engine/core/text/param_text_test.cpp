@@ -202,6 +202,8 @@ TEST(ParamText, NamesAndSuggestions) {
     const std::vector<std::string> names{"bloom_threshold", "bloom_intensity", "exposure"};
     EXPECT_EQ(nearest("bloom_treshold", names), "bloom_threshold");
     EXPECT_EQ(nearest("exposuer", names), "exposure");
+    EXPECT_EQ(nearest("bloom", names), "bloom_threshold") << "what goes on behind it";
+    EXPECT_EQ(nearest("blo", names), "");
     EXPECT_EQ(nearest("not_a_section", names), "");
     EXPECT_EQ(nearest(std::string(100000, 'x'), names), "");
 }

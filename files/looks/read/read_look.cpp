@@ -27,10 +27,18 @@ Result<Look> LookReader::read(const toml::table& file) {
     return finish(std::move(look));
 }
 
-/// Is it one of the flat table?
-static bool is_flat_key(std::string_view key) {
+/// What an unknown key at the top was meant to be: one of the flat table, or misspelt.
+static std::string meant_at_top(const std::string& key, std::span<const std::string> names) {
     Look look = default_look();
-    return find_target(look, key, {}).has_value();
+    if (find_target(look, key, {})) return ": it belongs below [post_process]";
+    std::string near = suggestion(key, names);
+    if (!near.empty()) return near;
+    std::vector<std::string> flat;
+    for (const LookEntry& entry : look.entries)
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            flat.push_back(flat_key(entry.effect->name, row.name));
+    near = nearest(key, flat);
+    return near.empty() ? near : fmt::format(", did you mean '{}' below [post_process]?", near);
 }
 
 void LookReader::read_top(const toml::table& file) {
@@ -40,9 +48,7 @@ void LookReader::read_top(const toml::table& file) {
         if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())
             report(key.source().begin, Weight::Slip,
                    fmt::format("unknown key '{}'{}", printable(key.str()),
-                               problems_.size() < max_suggestions && is_flat_key(key.str())
-                                   ? ": it belongs below [post_process]"
-                                   : suggestion(key.str(), names)));
+                               problems_.size() < max_suggestions ? meant_at_top(std::string(key.str()), names) : ""));
     const toml::node* const format = file.get("format");
     if (format == nullptr) return;
     const auto* const number = format->as_integer();

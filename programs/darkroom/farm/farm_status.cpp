@@ -96,8 +96,9 @@ Json document_of(const Status& status) {
 }
 
 void print(const Status& status) {
-    answer(fmt::format("{}: {} frames: {} done, {} failed, {} missing", printable(status.folder), status.frames.size(),
-                       status.done.size(), status.failed.size(), status.missing.size()));
+    answer(fmt::format("{}: {} frame{}: {} done, {} failed, {} missing", printable(status.folder), status.frames.size(),
+                       status.frames.size() == 1 ? "" : "s", status.done.size(), status.failed.size(),
+                       status.missing.size()));
     double seconds = 0;
     std::int64_t made = 0;
     for (const ChunkRecord& record : status.chunks) {

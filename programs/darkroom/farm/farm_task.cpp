@@ -73,8 +73,8 @@ class Task {
         if (!is_written_) DARKROOM_TRY(write());
         if (is_done()) return exit_ok;
         const FrameNumbers left = without(record_.frames, record_.done);
-        complain(fmt::format("frames {} failed in {} tries: {}", shown(left), record_.tries,
-                             printable((work_.folder / (record_.name + ".json")).string())));
+        complain(fmt::format("{} {} failed in {} tries: {}", left.size() == 1 ? "frame" : "frames", shown(left),
+                             record_.tries, printable((work_.folder / (record_.name + ".json")).string())));
         return code_;
     }
 

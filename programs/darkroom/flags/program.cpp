@@ -101,11 +101,30 @@ darkroom::Failure mismatch(std::string_view text) {
         fmt::format("{}: stands {} times, once is allowed", printable(flag), text.substr(found + too_often.size())));
 }
 
-std::string missing(const CLI::App& program, const char* text) {
-    for (const CLI::App* const command : program.get_subcommands())
-        if (command->get_require_subcommand_min() > 0 && command->get_subcommands().empty())
-            return fmt::format("{}: {}", command->get_name(), unknown_argument(*command));
-    return program.get_subcommands().empty() ? unknown_argument(program) : text;
+// "--look --output a.png": the flag that CLI11 took for a value, since that is missing.
+std::string flag_for_value(const CLI::App& command) {
+    for (const CLI::Option* const option : command.get_options()) {
+        if (option->get_positional()) continue;
+        for (const std::string& value : option->results())
+            if (value.starts_with('-') && command.get_option_no_throw(value.substr(0, value.find('='))) != nullptr)
+                return fmt::format("{}: one value is needed, before '{}'", option->get_name(), printable(value));
+    }
+    return {};
+}
+
+std::string missing(const CLI::App& program) {
+    if (const auto typed = program.get_subcommands(); !typed.empty()) return missing(*typed.front());
+    if (program.get_require_subcommand_min() > 0)
+        return (program.get_parent() == nullptr ? "" : program.get_name() + ": ") + unknown_argument(program);
+    if (!program.remaining().empty()) return unknown_argument(program, program.remaining().front());
+    if (std::string text = flag_for_value(program); !text.empty()) return text;
+    const CommandText command = describe(program);
+    for (const std::vector<FlagText>* const list : {&command.positionals, &command.flags})
+        for (const FlagText& flag : *list)
+            if (flag.is_required && program.get_option(flag.names.front())->empty())
+                return fmt::format("{}: {}{} is needed: {}", full_name(program), flag.names.front(),
+                                   flag.value.empty() ? "" : " " + flag.value, flag.doc);
+    return fmt::format("{}: an argument is missing", full_name(program));
 }
 
 }  // namespace
@@ -149,8 +168,8 @@ Result<std::optional<int>> Program::parse(std::span<char* const> arguments) cons
         const std::size_t end = text.find(": ");
         return user_error(fmt::format("{}: allowed is true or false",
                                       printable(end == std::string::npos ? text : text.substr(end + 2))));
-    } catch (const CLI::RequiredError& error) {
-        return user_error(missing(*parser_, error.what()));
+    } catch (const CLI::RequiredError&) {
+        return user_error(missing(*parser_));
     } catch (const CLI::ParseError& error) {
         return user_error(printable(error.what()));
     }
@@ -171,6 +190,7 @@ void add_voice(CommandFlags command) {
 bool is_asked(CommandFlags command) { return command.parser().parsed(); }
 
 Result<> check_values(CommandFlags command) {
+    if (std::string text = flag_for_value(command.parser()); !text.empty()) return user_error(std::move(text));
     for (const CLI::Option* const option : command.parser().get_options()) {
         if (option->get_type_name().empty()) continue;
         for (const std::string& value : option->results())

@@ -3,15 +3,17 @@
 
 import itertools
 import os
+import pathlib
 
 import numpy
 
 from . import _device, _engine
-from ._error import Error, nearest, of_file, store
+from ._error import Error, MissingFileError, nearest, of_file, store
 from ._frame import Camera, Frame, as_array, as_frame, from_codes16, say_once, size_of, warn
 from ._table import Table
 
 _numbers = itertools.count()
+_shipped = pathlib.Path(__file__).parent / "looks"
 
 
 def value_text(value, name):
@@ -43,15 +45,26 @@ def value_texts(values, name):
     return [(key, value_text(value, f"{name}.{key}")) for key, value in values.items()]
 
 
+def look_file(look):
+    """The file of a look: "night" is the one that ships, where no file has this name."""
+    path = os.fspath(look)
+    if not path or any(mark in path for mark in "/\\.") or os.path.exists(path):
+        return path
+    names = [file.stem for file in _shipped.glob("*.toml")]
+    if path not in names:
+        raise MissingFileError(f"{path}: no such file, and no look that ships has this name{nearest(path, names)}")
+    return os.fspath(_shipped / f"{path}.toml")
+
+
 class Stack:
     """An ordered list of effects. Each has a method of its name, which appends it and gives the stack back:
 
         stack = darkroom.Stack().bloom(intensity=0.1).tonemap()
         picture = stack.develop(frame)
 
-    `look` is the file of a look (TOML), another stack to copy, or None for an empty one. A stack is a look: `text` and
-    `save` write it as one. Effects of files run as code on the GPU: allows_custom_effects=False refuses looks that name
-    some.
+    `look` is the file of a look (TOML), the name of one that ships ("night"), another stack to copy, or None for an
+    empty one. A stack is a look: `text` and `save` write it as one. Effects of files run as code on the GPU:
+    allows_custom_effects=False refuses looks that name some.
     """
 
     def __init__(self, look=None, *, allows_custom_effects: bool = True):
@@ -62,10 +75,11 @@ class Stack:
         elif isinstance(look, Stack):
             self._look = look._look.copy()
         elif isinstance(look, (str, os.PathLike)):
-            with of_file(look):
-                self._look, warnings = _engine.Look.read(os.fspath(look), allows_custom_effects)
+            file = look_file(look)
+            with of_file(file):
+                self._look, warnings = _engine.Look.read(file, allows_custom_effects)
         else:
-            raise Error(f"look: a {type(look).__name__}: allowed is the path of a look, or a Stack")
+            raise Error(f"look: a {type(look).__name__}: allowed is the path or name of a look, or a Stack")
         warn(warnings)
 
     @classmethod
@@ -217,10 +231,11 @@ def develop(image, look=None, *, output: str = "encoded8", size=None, **layers):
     """Develops a picture, as `darkroom develop` does.
 
     image: an array of height x width x 3 or 4, or a Frame, or a dictionary of layers. float16 and float32 are
-    scene-linear light in Rec. 709; uint8 and uint16 are code values of sRGB. look: the file of a look (TOML), a Stack, or None for
-    the default. layers: depth, normals, velocity, camera and so on, as darkroom.Frame has them. output: "encoded8",
-    bytes for the screen (sRGB, uint8); "encoded", the same before it is rounded (float32); "linear", scene-linear light
-    (float32). size: (width, height) of the picture where it is another than the frame's.
+    scene-linear light in Rec. 709; uint8 and uint16 are code values of sRGB. look: the file of a look (TOML), the name
+    of one that ships, a Stack, or None for the default. layers: depth, normals, velocity, camera and so on, as
+    darkroom.Frame has them. output: "encoded8", bytes for the screen (sRGB, uint8); "encoded", the same before it is
+    rounded (float32); "linear", scene-linear light (float32). size: (width, height) of the picture where it is another
+    than the frame's.
     """
     if isinstance(look, Stack):
         return look.develop(image, output=output, size=size, **layers)

@@ -64,6 +64,9 @@ class Stacks(Case):
     def test_shipped_looks(self):
         film = darkroom.Stack(source / "looks" / "film.toml")
         self.assertSame(film.develop(light()), darkroom.develop(light(), source / "looks" / "film.toml"))
+        self.assertEqual(darkroom.Stack("film").text, film.text)
+        with self.assertRaisesRegex(FileNotFoundError, "^flim: no such file, and .*, did you mean 'film'\\?$"):
+            darkroom.Stack("flim")
         self.assertGreater(darkroom.compare(film.develop(light()), darkroom.develop(light())).flip_mean, 0.01)
         with self.assertWarnsRegex(UserWarning, "look:1:1: "):
             darkroom.Stack.parse("nosuch = 1\n[post_process]\nexposure = 2.0\n")
