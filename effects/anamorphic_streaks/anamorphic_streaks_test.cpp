@@ -8,6 +8,7 @@
 #include "anamorphic_streaks/anamorphic_streaks_reference.hpp"
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
+#include "shared/test_lamp.hpp"
 #include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
@@ -125,6 +126,14 @@ TEST(EffectAnamorphicStreaks, GpuNanAndInfinityStayContained) {
             if (y < 8 || y > 24) {
                 EXPECT_EQ(out.at(x, y).r, 0.5) << x << ", " << y;
             }
+}
+
+TEST(EffectAnamorphicStreaks, GpuLampsCountAlikeWhereverTheyLie) {
+    test::expect_lamps_count_alike(
+        [](Composer& composer) {
+            composer.add(AnamorphicStreaks{.intensity = 1, .threshold = 0, .length = 40, .tint = {1, 1, 1}});
+        },
+        {1, 1, 1});
 }
 
 }  // namespace

@@ -29,40 +29,62 @@ vec3 bloom_average(BloomTaps taps) {
     return total.rgb / total.a;
 }
 
-vec4 bloom_bright_part(vec3 color) {
+vec3 bloom_bright_part(vec3 color) {
     float threshold = custom[0].x;
     float knee = custom[0].y;
     float brightness = max(color.r, max(color.g, color.b));
     float soft = clamp(brightness - threshold + knee, 0.0, 2.0 * knee);
     soft = soft * soft / (4.0 * knee + 1e-5);
     float weight = max(soft, brightness - threshold) / max(brightness, 1e-5);
-    return vec4(min(color * weight, custom[0].z) * custom[0].w, 1.0);
+    return min(color * weight, custom[0].z) * custom[0].w;
+}
+
+// Filter and threshold weigh a lamp by how many boxes it lies in, so all taps lie on corners of texels, two texels apart:
+// what is made there, a cell, does not depend on where the lamp lies. Along an odd side a pixel of level 0 lies between two
+// cells: this far behind the first.
+vec2 bloom_between_cells(ivec2 texel, ivec2 source, ivec2 extent) {
+    return vec2(source & 1) * vec2(2 * texel + 1) / vec2(4 * extent);
+}
+
+float bloom_part(float between, int cell) { return cell == 0 ? 1.0 - between : between; }
+
+vec3 bloom_tap(int from, vec2 place) {
+    return sanitize_light(sample_linear(bloom_source, place / vec2(size(bloom_source))).rgb);
 }
 
 #part prefilter
 // The scene to level 0, a kernel of a pixel: 13 taps, cleaned, averaged as five overlapping boxes, then the threshold.
 
-vec3 bloom_tap(int from, vec2 place) {
-    return sanitize_light(sample_linear(bloom_source, place * (0.5 / vec2(output_size()))).rgb);
-}
-
 vec4 shade(Pixel pixel) {
-    return bloom_bright_part(bloom_average(bloom_taps_of(0, pixel.texel, size(bloom_source))));
+    ivec2 source = size(bloom_source), cells = 1 + (source & 1);
+    vec2 between = bloom_between_cells(pixel.texel, source, pixel.size);
+    vec3 light = vec3(0.0);
+    for (int y = 0; y < cells.y; ++y)
+        for (int x = 0; x < cells.x; ++x)
+            light += bloom_bright_part(bloom_average(bloom_taps_of(0, pixel.texel + ivec2(x, y), bloom_rows_between))) *
+                     (bloom_part(between.x, x) * bloom_part(between.y, y));
+    return vec4(light, 1.0);
 }
 
 #part prefilter_pairs
 // The scene to level 0, two pixels side by side at once, so that they take 18 taps and not 26.
 
-vec3 bloom_tap(int from, vec2 place) {
-    return sanitize_light(sample_linear(bloom_source, place * (0.5 / vec2(size(bloom_level_0)))).rgb);
-}
-
 void run() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(2, 1), extent = size(bloom_level_0);
     if (any(greaterThanEqual(texel, extent))) return;
-    BloomTaps taps[2] = bloom_taps_of_pair(0, texel, size(bloom_source));
-    store(bloom_level_0, texel, bloom_bright_part(bloom_average(taps[0])));
-    if (texel.x + 1 < extent.x) store(bloom_level_0, texel + ivec2(1, 0), bloom_bright_part(bloom_average(taps[1])));
+    ivec2 source = size(bloom_source), cells = 1 + (source & 1), behind = texel + ivec2(1, 0);
+    vec2 between = bloom_between_cells(texel, source, extent);
+    float between_behind = bloom_between_cells(behind, source, extent).x;
+    vec3 light[2] = vec3[2](vec3(0.0), vec3(0.0));
+    for (int y = 0; y < cells.y; ++y)
+        for (int x = 0; x < cells.x; ++x) {
+            BloomTaps taps[2] = bloom_taps_of_pair(0, texel + ivec2(x, y), bloom_rows_between);
+            float part = bloom_part(between.y, y);
+            light[0] += bloom_bright_part(bloom_average(taps[0])) * (bloom_part(between.x, x) * part);
+            light[1] += bloom_bright_part(bloom_average(taps[1])) * (bloom_part(between_behind, x) * part);
+        }
+    store(bloom_level_0, texel, vec4(light[0], 1.0));
+    if (behind.x < extent.x) store(bloom_level_0, behind, vec4(light[1], 1.0));
 }
 
 #part downsample
@@ -85,7 +107,7 @@ vec3 bloom_tap(int from, vec2 place) {
 // Level i-1 to level i, a kernel of a pixel: by the 13 taps.
 
 vec4 shade(Pixel pixel) {
-    return vec4(bloom_mean_of(bloom_taps_of(0, pixel.texel, size(bloom_above))), 1.0);
+    return vec4(bloom_mean_of(bloom_taps_of(0, pixel.texel, bloom_rows(size(bloom_above)))), 1.0);
 }
 
 #part upsample

@@ -14,6 +14,7 @@
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "image/compare/flip.hpp"
+#include "shared/test_lamp.hpp"
 
 namespace darkroom {
 namespace {
@@ -277,6 +278,39 @@ TEST(BloomGpu, HugeFieldsStayFinite) {
     const ReferenceImage low = test::uniform(480, 270, {65504, 65504, 65504, 1});
     for (const Rgba& color : developed({.intensity = 1, .mode = BloomMode::EnergyConserving}, low).pixels)
         EXPECT_NEAR(color.r, 65504, 65504.0 * 9 * 0x1p-10);
+}
+
+/// What the firefly filter leaves of a pixel of light in an even picture, in all: boxes of 4x4 pixels, of which one
+/// counts 1/2 and lies in the middle of the others, each by 1 / (1 + luminance).
+double left_of(double light, double luminance) {
+    struct Box {
+        int x, y;
+        double weight;
+    };
+    double sum = 0;
+    for (int y = -4; y <= 4; y += 2)
+        for (int x = -4; x <= 4; x += 2) {
+            double mean = 0, weights = 0;
+            for (const Box& box : {Box{0, 0, 0.5}, {-1, -1, 0.125}, {1, -1, 0.125}, {-1, 1, 0.125}, {1, 1, 0.125}}) {
+                const auto has = [](int first) { return first - 2 <= 0 && first + 2 > 0; };
+                const double own = has(x + 1 + box.x) && has(y + 1 + box.y) ? light / 16 : 0;
+                const double weight = box.weight / (1 + luminance * own);
+                mean += weight * own, weights += weight;
+            }
+            sum += 4 * mean / weights;
+        }
+    return sum;
+}
+
+TEST(BloomGpu, LampsCountAlikeWhereverTheyLie) {
+    // Two levels add all light each.
+    Bloom bloom{.intensity = 1, .threshold = 0, .soft_threshold = 0, .firefly_filter = false, .reach = Reach::Pixels};
+    bloom.levels = 2;
+    test::expect_lamps_count_alike([&](Composer& composer) { composer.add(bloom); }, {2, 2, 2});
+    bloom.firefly_filter = true;
+    test::expect_lamps_count_alike(
+        [&](Composer& composer) { composer.add(bloom); },
+        {2 * left_of(100, 0.2126) / 100, 2 * left_of(100, 0.7152) / 100, 2 * left_of(100, 0.0722) / 100});
 }
 
 }  // namespace

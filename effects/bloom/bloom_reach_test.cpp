@@ -87,8 +87,8 @@ std::vector<double> kernel_of(std::uint32_t level, double tent) {
     const std::uint32_t side = 2u << level, first = 128 - side / 2;
     for (std::uint32_t y = 0; y < side; ++y)
         for (std::uint32_t x = 0; x < side; ++x) lamp.at(first + x, first + y) = {1, 1, 1, 1};
-    std::vector<ReferenceImage> down{bloom_reference_down(lamp, false)};
-    while (down.size() <= level) down.push_back(bloom_reference_down(down.back(), false));
+    std::vector<ReferenceImage> down{bloom_reference_down(lamp)};
+    while (down.size() <= level) down.push_back(bloom_reference_down(down.back()));
     ReferenceImage up = down.back();
     for (std::uint32_t above = level; above-- > 0;) {
         ReferenceImage onto(down[above].width, down[above].height);

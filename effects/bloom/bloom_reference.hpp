@@ -44,36 +44,64 @@ inline double bloom_reference_threshold(double brightness, double threshold, dou
     return std::max(soft, brightness - threshold) / std::max(brightness, 1e-5);
 }
 
-/// The half-size image: five overlapping boxes of four bilinear taps each. With `firefly_filter` every box is weighted
-/// by 1 / (1 + luminance) (Brian Karis, "Tone mapping", 2013), and the sum divided by the sum of the weights. Where
-/// both sides of the source are odd, the rows of taps lie elsewhere: see bloom.glsl#downsample.
-inline ReferenceImage bloom_reference_down(const ReferenceImage& image, bool firefly_filter) {
-    ReferenceImage out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u));
+/// Five overlapping boxes of four bilinear taps each around a place, 0 .. 1 of both sides, whose steps are `step`; the
+/// rows of the outer and of the inner taps are so many of them away. With `firefly_filter` every box is weighted by
+/// 1 / (1 + luminance) (Brian Karis, "Tone mapping", 2013), and the sum divided by the sum of the weights.
+struct BloomPlace {
+    double u = 0, v = 0;
+};
+inline Rgba bloom_reference_boxes(const ReferenceImage& image, BloomPlace place, BloomPlace step, double outer,
+                                  double inner, bool firefly_filter) {
     struct Box {
         double left, right, top, bottom, weight;
     };
-    const bool is_odd = (image.width & image.height & 1u) != 0;
-    const double outer = is_odd ? 1 : 2, inner = is_odd ? 1.5 : 1;
     const std::array boxes{Box{-1, 1, -inner, inner, 0.5}, Box{-2, 0, -outer, 0, 0.125}, Box{0, 2, -outer, 0, 0.125},
                            Box{-2, 0, 0, outer, 0.125}, Box{0, 2, 0, outer, 0.125}};
-    for (std::uint32_t y = 0; y < out.height; ++y)
-        for (std::uint32_t x = 0; x < out.width; ++x) {
-            Rgba sum{0, 0, 0, 1};
-            double weights = 0;
-            for (const Box& box : boxes) {
-                Rgba mean{0, 0, 0, 1};
-                for (const double dy : {box.top, box.bottom})
-                    for (const double dx : {box.left, box.right}) {
-                        const double u = (x + 0.5 + 0.5 * dx) / out.width, v = (y + 0.5 + 0.5 * dy) / out.height;
-                        mean = bloom_reference_sum(mean, bloom_reference_clean(bloom_reference_tap(image, u, v)), 0.25);
-                    }
-                const double luminance = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
-                const double weight = box.weight / (firefly_filter ? 1.0 + luminance : 1.0);
-                sum = bloom_reference_sum(sum, mean, weight);
-                weights += weight;
+    Rgba sum{0, 0, 0, 1};
+    double weights = 0;
+    for (const Box& box : boxes) {
+        Rgba mean{0, 0, 0, 1};
+        for (const double dy : {box.top, box.bottom})
+            for (const double dx : {box.left, box.right}) {
+                const Rgba tap = bloom_reference_tap(image, place.u + dx * step.u, place.v + dy * step.v);
+                mean = bloom_reference_sum(mean, bloom_reference_clean(tap), 0.25);
             }
-            out.at(x, y) = bloom_reference_sum({0, 0, 0, 1}, sum, 1.0 / weights);
-        }
+        const double luminance = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
+        const double weight = box.weight / (firefly_filter ? 1.0 + luminance : 1.0);
+        sum = bloom_reference_sum(sum, mean, weight);
+        weights += weight;
+    }
+    return bloom_reference_sum({0, 0, 0, 1}, sum, 1.0 / weights);
+}
+
+/// The half-size level. Where both sides of the one above are odd, the rows of taps lie elsewhere: see
+/// bloom_taps.glsl.
+inline ReferenceImage bloom_reference_down(const ReferenceImage& image) {
+    ReferenceImage out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u));
+    const bool is_odd = (image.width & image.height & 1u) != 0;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            out.at(x, y) =
+                bloom_reference_boxes(image, {(x + 0.5) / out.width, (y + 0.5) / out.height},
+                                      {0.5 / out.width, 0.5 / out.height}, is_odd ? 1 : 2, is_odd ? 1.5 : 1, false);
+    return out;
+}
+
+/// The first level: cells two texels apart, as if the picture had one column and one row more where those are odd, of
+/// each what `bright` leaves; then the half-size image of them by bilinear taps.
+template <class Bright>
+ReferenceImage bloom_reference_first(const ReferenceImage& image, bool firefly_filter, const Bright& bright) {
+    ReferenceImage cells((image.width + 1) / 2, (image.height + 1) / 2),
+        out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u));
+    const BloomPlace texel{1.0 / image.width, 1.0 / image.height};
+    for (std::uint32_t y = 0; y < cells.height; ++y)
+        for (std::uint32_t x = 0; x < cells.width; ++x)
+            cells.at(x, y) = bright(bloom_reference_boxes(image, {(2 * x + 1) * texel.u, (2 * y + 1) * texel.v}, texel,
+                                                          2, 1, firefly_filter));
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            out.at(x, y) = bloom_reference_tap(cells, (x + 0.5) * image.width / out.width / 2 / cells.width,
+                                               (y + 0.5) * image.height / out.height / 2 / cells.height);
     return out;
 }
 
@@ -130,15 +158,15 @@ inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, cons
     const double most = 65504 * (1 - (levels.count - 1) / 1024.0), total = levels.total();
     const double last_tent = bloom_last_tent(bloom, {source.width, source.height});
     const double limit = is_additive ? most / std::max(total, 1.0) : most;
-    std::vector<ReferenceImage> pyramid{bloom_reference_down(source, is_additive && bloom.firefly_filter)};
-    for (Rgba& color : pyramid[0].pixels) {
+    const auto bright = [&](const Rgba& color) {
         const double brightness = std::max({color.r, color.g, color.b});
         const double factor =
             is_additive ? bloom_reference_threshold(brightness, bloom.threshold, bloom.soft_threshold) : 1;
         const auto limited = [&](double value) { return std::min(value * factor, limit); };
-        color = {limited(color.r), limited(color.g), limited(color.b), 1};
-    }
-    while (pyramid.size() < levels.count) pyramid.push_back(bloom_reference_down(pyramid.back(), false));
+        return Rgba{limited(color.r), limited(color.g), limited(color.b), 1};
+    };
+    std::vector<ReferenceImage> pyramid{bloom_reference_first(source, is_additive && bloom.firefly_filter, bright)};
+    while (pyramid.size() < levels.count) pyramid.push_back(bloom_reference_down(pyramid.back()));
     for (std::size_t level = levels.count; level-- > 0;) {
         for (Rgba& color : pyramid[level].pixels)
             color = bloom_reference_sum({0, 0, 0, 1}, color, levels.weights[level] / (is_additive ? 1 : total));

@@ -6,7 +6,7 @@
 //
 // The centre lies on a corner of texels, so each tap averages 2x2 of them. The taps of all outputs form a grid of one
 // texel's step with every second place empty, like the black squares of a chessboard. That is harmless while taps lie
-// between texels. Where both sides of the source are odd, taps drift onto texels toward the middle, and every second texel
+// between texels. Where both sides of a level are odd, taps drift onto texels toward the middle, and every second texel
 // would be lost. There the outer rows are 1 and the inner ones 1.5 texels from the centre: with these the sum over
 // w cos(pi x) cos(pi y) of the taps is 0, as it is over w cos(pi x) and over w cos(pi y), so no pattern of that kind is left
 // at any phase, and the filter is nearly as wide (variance 1.375, not 1.5).
@@ -22,8 +22,9 @@ struct BloomTaps {
 };
 
 // How far outer and inner rows are from the centre.
-vec2 bloom_rows(ivec2 source) {
-    return (source.x & source.y & 1) == 1 ? vec2(1.0, 1.5) : vec2(2.0, 1.0);
+const vec2 bloom_rows_between = vec2(2.0, 1.0);
+vec2 bloom_rows(ivec2 above) {
+    return (above.x & above.y & 1) == 1 ? vec2(1.0, 1.5) : bloom_rows_between;
 }
 
 BloomColumn bloom_outer(int from, vec2 place, vec2 rows) {
@@ -35,16 +36,16 @@ vec3 bloom_inner(int from, vec2 place, vec2 rows) {
     return bloom_tap(from, place - vec2(0.0, rows.y)) + bloom_tap(from, place + vec2(0.0, rows.y));
 }
 
-BloomTaps bloom_taps_of(int from, ivec2 texel, ivec2 source) {
-    vec2 place = vec2(2 * texel + 1), rows = bloom_rows(source), right = vec2(1.0, 0.0);
+BloomTaps bloom_taps_of(int from, ivec2 texel, vec2 rows) {
+    vec2 place = vec2(2 * texel + 1), right = vec2(1.0, 0.0);
     return BloomTaps(bloom_outer(from, place - 2.0 * right, rows), bloom_outer(from, place, rows),
                      bloom_outer(from, place + 2.0 * right, rows),
                      bloom_inner(from, place - right, rows) + bloom_inner(from, place + right, rows));
 }
 
 // Taps of a pixel and of the one to its right, which share two columns of outer taps.
-BloomTaps[2] bloom_taps_of_pair(int from, ivec2 texel, ivec2 source) {
-    vec2 place = vec2(2 * texel + 1), rows = bloom_rows(source);
+BloomTaps[2] bloom_taps_of_pair(int from, ivec2 texel, vec2 rows) {
+    vec2 place = vec2(2 * texel + 1);
     BloomColumn outer[4];
     vec3 inner[3];
     for (int i = 0; i < 4; ++i) outer[i] = bloom_outer(from, place + vec2(2 * i - 2, 0), rows);

@@ -130,7 +130,7 @@ void run() {
         int pair = i * bloom_threads + thread;
         ivec2 texel = bloom_tile_of(1).first + ivec2(pair % 19 * 2, pair / 19);
         if (pair >= 19 * 38 || texel.x >= bloom_size(1).x || texel.y >= bloom_size(1).y) continue;
-        BloomTaps taps[2] = bloom_taps_of_pair(0, texel, size(bloom_level_0));
+        BloomTaps taps[2] = bloom_taps_of_pair(0, texel, bloom_rows(size(bloom_level_0)));
         bloom_put_first(texel, bloom_mean_of(taps[0]));
         bloom_put_first(texel + ivec2(1, 0), bloom_mean_of(taps[1]));
     }
@@ -142,7 +142,7 @@ void run() {
         bloom_put_second(texel + ivec2(1, 0), vec3(0.0));
         return;
     }
-    BloomTaps taps[2] = bloom_taps_of_pair(1, texel, bloom_size(1));
+    BloomTaps taps[2] = bloom_taps_of_pair(1, texel, bloom_rows(bloom_size(1)));
     bloom_put_second(texel, bloom_mean_of(taps[0]));
     bloom_put_second(texel + ivec2(1, 0), bloom_mean_of(taps[1]));
 }
@@ -189,7 +189,7 @@ void bloom_halve(int level, int width, int height) {
         int pair = i * bloom_threads + int(gl_LocalInvocationIndex);
         ivec2 texel = bloom_tile_of(level).first + ivec2(pair % (width / 2) * 2, pair / (width / 2));
         if (pair >= width / 2 * height || texel.x >= extent.x || texel.y >= extent.y) continue;
-        BloomTaps taps[2] = bloom_taps_of_pair(level - 1, texel, bloom_size(level - 1));
+        BloomTaps taps[2] = bloom_taps_of_pair(level - 1, texel, bloom_rows(bloom_size(level - 1)));
         for (int k = 0; k < 2; ++k)
             if (bloom_is_inside(level, texel + ivec2(k, 0)))
                 bloom_keep(level, texel + ivec2(k, 0), as_stored(bloom_sum, vec4(bloom_mean_of(taps[k]), 1.0)).rgb);

@@ -6,6 +6,7 @@
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "halation/halation_reference.hpp"
+#include "shared/test_lamp.hpp"
 #include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
@@ -128,6 +129,14 @@ TEST(EffectHalation, GpuMatchesReference) {
 
 TEST(EffectHalation, GpuNanAndInfinityStayContained) {
     test::expect_contained(developed({}, test::grey_with_no_numbers()));
+}
+
+TEST(EffectHalation, GpuLampsCountAlikeWhereverTheyLie) {
+    test::expect_lamps_count_alike(
+        [](Composer& composer) {
+            composer.add(Halation{.intensity = 1, .threshold = 0, .tint = {1, 1, 1}, .conserves_energy = false});
+        },
+        {1, 1, 1});
 }
 
 }  // namespace

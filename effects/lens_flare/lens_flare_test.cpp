@@ -9,6 +9,7 @@
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "lens_flare/lens_flare_reference.hpp"
+#include "shared/test_lamp.hpp"
 #include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
@@ -180,6 +181,15 @@ TEST(EffectLensFlare, TheSmallPictureHasAsManyTexelsAtEverySize) {
     EXPECT_EQ(bright_part({2560, 1440}), 4u);
     EXPECT_EQ(bright_part({3840, 2160}), 8u);
     EXPECT_EQ(bright_part({7680, 4320}), 16u);
+}
+
+TEST(EffectLensFlare, GpuLampsCountAlikeWhereverTheyLie) {
+    test::expect_lamps_count_alike(
+        [](Composer& composer) {
+            composer.add(
+                LensFlare{.intensity = 1, .threshold = 0, .ghosts = 1, .halo = 0, .dispersion = 0, .starburst = 0});
+        },
+        {1, 1, 1});
 }
 
 }  // namespace
