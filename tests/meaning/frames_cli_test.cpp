@@ -252,31 +252,62 @@ TEST_F(CliFrameMeaning, LayersOfAnotherViewLayerAreLeftOutAndNamed) {
 }
 
 TEST_F(CliFrameMeaning, TheLengthOfARayIsMadeDepthWhereTheCameraIsKnown) {
-    // A plane at 5 across the axis, seen by 60 degrees: closed form, pixel by pixel; behind its last row is nothing.
+    // A plane at 5 across the axis, seen by 60 degrees from Mitsuba's near clip on: closed form, pixel by pixel; behind
+    // its last row is nothing.
     const double slope = std::tan(std::numbers::pi / 6);
-    Samples rays = all(0);
-    for (int y = 0; y + 1 < frame_height; ++y)
-        for (int x = 0; x < frame_width; ++x) {
-            const double up = (1 - (y + 0.5) / (frame_height / 2.0)) * slope;
-            const double right = ((x + 0.5) / (frame_width / 2.0) - 1) * slope * frame_width / frame_height;
-            rays[static_cast<std::size_t>(y * frame_width + x)] =
-                static_cast<float>(5 * std::sqrt(1 + right * right + up * up));
-        }
+    const auto rays = [&](double near, double opening) {
+        Samples out = all(0);
+        for (int y = 0; y + 1 < frame_height; ++y)
+            for (int x = 0; x < frame_width; ++x) {
+                const double up = (1 - (y + 0.5) / (frame_height / 2.0)) * opening;
+                const double right = ((x + 0.5) / (frame_width / 2.0) - 1) * opening * frame_width / frame_height;
+                out[static_cast<std::size_t>(y * frame_width + x)] =
+                    static_cast<float>((5 - near) * std::sqrt(1 + right * right + up * up));
+            }
+        return out;
+    };
+    const auto expect_plane = [&](const FrameOptions& options, const std::string& what) {
+        const Result<FrameFile> frame = read_frame(path("in.exr"), options);
+        ASSERT_TRUE(frame && frame->depth) << what;
+        const std::size_t seen = std::size_t{frame_width} * (frame_height - 1);
+        for (std::size_t i = 0; i < seen; ++i) ASSERT_NEAR(frame->depth->values[i], 5, 1e-5) << what << ' ' << i;
+        EXPECT_EQ(frame->depth->values[seen], sky_depth) << what;
+    };
+    for (const std::string layer : {"depth", "dd.y"}) {
+        std::map<std::string, Samples> channels = rgb(0.5F);
+        channels[layer + ".T"] = rays(0.01, slope);
+        store(path("in.exr"), {{.channels = channels}});
+        const Result<FrameFile> blind = read_frame(path("in.exr"));
+        ASSERT_TRUE(blind);
+        EXPECT_FALSE(blind->depth);
+        EXPECT_NE(fmt::format("{}", fmt::join(blind->warnings, " ")).find(layer + ".T is the length of a ray"),
+                  std::string::npos);
+        expect_plane({.vertical_field_of_view = 60}, layer);
+        for (const std::string& name : {layer, layer + ".T"})
+            expect_plane({.names = {{"depth", name}}, .vertical_field_of_view = 60}, "mapped " + name);
+    }
+    // The near clip is what the projection says: 0.5, by depth 0 and, where it is reversed, by 1.
     std::map<std::string, Samples> channels = rgb(0.5F);
-    channels["depth.T"] = rays;
+    channels["dd.y.T"] = rays(0.5, slope);
     store(path("in.exr"), {{.channels = channels}});
-    const Result<FrameFile> blind = read_frame(path("in.exr"));
-    ASSERT_TRUE(blind);
-    EXPECT_FALSE(blind->depth);
-    EXPECT_NE(fmt::format("{}", fmt::join(blind->warnings, " ")).find("length of a ray"), std::string::npos);
-    const Result<FrameFile> frame = read_frame(path("in.exr"), {.vertical_field_of_view = 60});
-    ASSERT_TRUE(frame && frame->depth);
-    const std::size_t seen = std::size_t{frame_width} * (frame_height - 1);
-    for (std::size_t i = 0; i < seen; ++i) ASSERT_NEAR(frame->depth->values[i], 5, 1e-5) << i;
-    EXPECT_EQ(frame->depth->values[seen], sky_depth);
+    const double wide = frame_height / slope / frame_width, high = -1 / slope;
+    const auto matrix = [&](double x, double y, const std::string& others) {
+        return fmt::format("projection = [{}, 0, 0, 0,  0, {}, 0, 0,  {}]\n", x, y, others);
+    };
+    write(path("camera.toml"), matrix(wide, high, "0, 0, -2, -1,  0, 0, -1, 0"));  // far at 1
+    expect_plane({.camera_file = path("camera.toml")}, "near 0.5");
+    write(path("camera.toml"), matrix(wide, high, "0, 0, 0, 0.5,  0, 0, -1, 0"));
+    expect_plane({.camera_file = path("camera.toml")}, "near 0.5, reversed");
+    // Rays of a parallel camera are as long as they are deep.
+    channels["dd.y.T"] = rays(0.5, 0);
+    store(path("in.exr"), {{.channels = channels}});
+    write(path("camera.toml"), matrix(0.5, -0.5, "0, 0, -0.01, -0.005,  0, 0, 0, 1"));
+    expect_plane({.camera_file = path("camera.toml")}, "parallel");
+}
 
-    channels.erase("depth.T");
-    channels["ViewLayer.Denoising Depth.Z"] = rays;
+TEST_F(CliFrameMeaning, BlendersDenoisingDepthIsLeftOut) {
+    std::map<std::string, Samples> channels = rgb(0.5F);
+    channels["ViewLayer.Denoising Depth.Z"] = all(5);
     store(path("in.exr"), {{.channels = channels}});
     const Result<FrameFile> denoising = read_frame(path("in.exr"));
     ASSERT_TRUE(denoising);

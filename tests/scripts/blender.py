@@ -5,37 +5,16 @@ examples/blender_camera.py writes of them. Right is what follows from the scene:
 normal is (0, 1, 0) and its depth that of a plane; nothing is left out. Ends with 77 where there is no bpy."""
 import os
 import pathlib
-import shutil
-import subprocess
 import sys
 import tempfile
 
-tree, program = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-try:
-    import bpy
-except ImportError:
-    wanted = shutil.which(os.environ.get("DARKROOM_BLENDER_PYTHON", ""))
-    if wanted and "DARKROOM_BLENDER_TRIED" not in os.environ:
-        os.environ["DARKROOM_BLENDER_TRIED"] = "1"
-        os.execv(wanted, [wanted, __file__, *sys.argv[1:]])
-    print("skipped: no bpy here; DARKROOM_BLENDER_PYTHON names a Python that has it")
-    sys.exit(77)
+import rendered
+from rendered import darkroom, expect, fail
 
-
+tree, sys.argv[2] = pathlib.Path(sys.argv[1]).resolve(), os.path.abspath(sys.argv[2])
+bpy = rendered.need("bpy", "DARKROOM_BLENDER_PYTHON")
 import mathutils
 from bpy_extras.object_utils import world_to_camera_view
-
-
-def fail(why):
-    print(why)
-    sys.exit(1)
-
-
-def darkroom(*arguments):
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
-    if done.returncode:
-        fail(f"darkroom {' '.join(map(str, arguments))}: {done.stderr}")
-    return done.stdout + done.stderr
 
 
 def make_scene(folder, kind):
@@ -71,33 +50,9 @@ def make_scene(folder, kind):
     exec(compile((tree / "examples/blender_camera.py").read_text(), "blender_camera.py", "exec"), {})
 
 
-SHOW = """// SPDX-License-Identifier: MIT
-// @effect show: Shows a frame's layers as colours.
-// @accepts scene_linear
-// @needs depth
-// @needs normals
-// @needs velocity
-// @param choice what = normals | height | motion: What is shown.
-
-#include "shared/camera.glsl"
-
-vec4 show(vec4 color, Pixel pixel, Show parameters) {
-    float planar = load(frame_depth, pixel.texel).r;
-    if (parameters.what == Show_what_normals) return vec4(load(frame_normals, pixel.texel).xyz, 1.0);
-    if (parameters.what == Show_what_height) return vec4(world_position(pixel.uv, planar), 1.0);
-    return vec4(load(frame_velocity, pixel.texel).xy, 0.0, 1.0);
-}
-"""
-
-
 def shown(folder, what):
     """Three numbers a pixel, by row from the top and column."""
-    (folder / "show.toml").write_text(f'format = 1\n[[stack]]\neffect = "show.glsl"\nwhat = "{what}"\n')
-    told = darkroom("develop", folder / "blender.0002.exr", "--camera", folder / "camera.####.toml", "--look",
-                    folder / "show.toml", "--bits", "float", "-q", "-o", folder / "shown.exr")
-    if told:
-        fail(told)
-    image = bpy.data.images.load(str(folder / "shown.exr"), check_existing=False)
+    image = bpy.data.images.load(rendered.show(folder / "blender.0002.exr", "camera.####.toml", what), check_existing=False)
     image.colorspace_settings.name = "Non-Color"
     width, height = image.size
     pixels = list(image.pixels)
@@ -110,16 +65,11 @@ def pixel_of(point):
     return x * 96, (1 - y) * 64
 
 
-def expect(what, found, right, most):
-    if max(abs(a - b) for a, b in zip(found, right)) > most:
-        fail(f"{what} is {list(found)}, {list(right)} is right")
-
-
 for kind in ("PERSP", "ORTHO"):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         make_scene(folder, kind)
-        (folder / "show.glsl").write_text(SHOW)
+        rendered.write_effect(folder, has_motion=True)
         alone = darkroom("develop", folder / "blender.0002.exr", "--ssao", "--fov", "40", "-q", "-o", folder / "a.png")
         if "normals are left out" not in alone:
             fail(f"{kind}: normals of a world without a camera were used: {alone}")
@@ -131,7 +81,7 @@ for kind in ("PERSP", "ORTHO"):
         to_camera = bpy.context.scene.camera.matrix_world.to_3x3().inverted()
         x, y = map(int, pixel_of((-1.5, 0, 0)))
         expect(f"{kind}: the floor's normal", shown(folder, "normals")(x, y), to_camera @ mathutils.Vector((0, 0, 1)), 2e-3)
-        place = shown(folder, "height")(x, y)
+        place = shown(folder, "place")(x, y)
         expect(f"{kind}: the floor's height", place[1:2], [0], 5e-3)
         seen = pixel_of((place[0], -place[2], 0))
         expect(f"{kind}: the place under a pixel", seen, [x + 0.5, y + 0.5], 0.05)

@@ -331,13 +331,22 @@ Result<> Finder::find_color(FrameChannels& found) const {
 bool is_of_unreal(std::string_view name) { return lower(name).ends_with("worlddepth"); }
 float scale_of_depth(std::string_view name) { return is_of_unreal(name) ? 0.01F : 1.0F; }
 
+// Mitsuba's, under any name: "dd.y:depth" makes it dd.y.T.
+bool is_length_of_ray(const Layer& layer) {
+    return !layer.name.empty() && layer.components.size() == 1 && layer.channel("t") >= 0;
+}
+
 Result<> Finder::find_depth(FrameChannels& found) const {
     if (const std::string* name = mapped("depth")) {
         if (*name == no_layer) return {};
-        constexpr std::array<std::string_view, 2> components{"z", "v"};
+        constexpr std::array<std::string_view, 3> components{"z", "v", "t"};
         found.depth = lone_channel(*name);
-        if (found.depth) return {};
-        DARKROOM_TRY_VALUE(found.depth, mapped_set("depth", *name, components));
+        if (!found.depth) {
+            DARKROOM_TRY_VALUE(found.depth, mapped_set("depth", *name, components));
+        }
+        const Layer* const of_ray = layer_of(*found.depth);
+        found.is_depth_along_ray = of_ray != nullptr && is_length_of_ray(*of_ray);
+        if (found.is_depth_along_ray) found.depth->prefix = of_ray->name;
         return {};
     }
     // Along the ray, from the near clip on, filtered, and 3.4e38 where nothing is.
@@ -364,8 +373,13 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         };
         if ((layer = best(names_channel)) == nullptr && (layer = best(is_named)) == nullptr) continue;
         const int channel = names_channel(*layer) ? layer->channel(name) : layer->components.begin()->second;
-        found.is_depth_along_ray = !names_channel(*layer) && layer->channel("t") >= 0;
+        found.is_depth_along_ray = is_length_of_ray(*layer);
         found.depth = ChannelSet{layer->part, {channel, -1, -1, -1}, layer->name};
+        return {};
+    }
+    if ((layer = best(is_length_of_ray)) != nullptr) {
+        found.is_depth_along_ray = true;
+        found.depth = layer->set("t");
         return {};
     }
     layer = best([](const Layer& l) { return is_of_unreal(l.name) && l.has("r"); });
@@ -387,9 +401,10 @@ Result<> Finder::find_normals(FrameChannels& found) const {
         DARKROOM_TRY_VALUE(found.normals, mapped_set("normals", *name, components));
         return {};
     }
-    const Layer* layer = best([](const Layer& l) {
-        const std::string name = last_component(l.name);
-        return (name == "n" || name == "normal" || name == "normals") && l.has("xyz");
+    // Those of Mitsuba's manual are the last two.
+    constexpr std::array<std::string_view, 5> known{"n", "normal", "normals", "nn", "sh_normal"};
+    const Layer* layer = best([&](const Layer& l) {
+        return std::ranges::find(known, last_component(l.name)) != known.end() && l.has("xyz");
     });
     if (layer != nullptr) found.normals = layer->set("xyz");
     return {};

@@ -36,7 +36,7 @@ struct FrameChannels {
     std::optional<ChannelSet> reactive;      ///< the first channel only
     std::optional<ChannelSet> transparency;  ///< red, green, blue
     bool is_velocity_y_up = false;           ///< Blender's Vector pass
-    bool is_depth_along_ray = false;         ///< Mitsuba's depth.T: the length of the ray, 0 where nothing is
+    bool is_depth_along_ray = false;         ///< Mitsuba's NAME.T: the ray's length from the near clip, 0: nothing
     float depth_scale = 1;                   ///< metres for each unit, as far as the layer's name tells
     std::vector<std::string> views;          ///< of a stereo picture, if there are several
     std::string view;                        ///< that the colour is of; may be empty
@@ -57,10 +57,10 @@ inline constexpr std::string_view no_layer = "none";
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
 
 /// Of several layers in colour the first of these is it: R, G, B of a file of one part; Composite; Combined; rgba; rgb;
-/// C; beauty; default; R, G, B of the first part; Y alone; the first layer with colour. Red, green, blue and alpha in full are
-/// R, G, B, A. Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a stereo
-/// picture; empty: the first that has a colour. An error names the channels that were found and what was looked for,
-/// without the file name.
+/// C; beauty; default; R, G, B of the first part; Y alone; the first layer with colour. Red, green, blue and alpha in
+/// full are R, G, B, A. Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a
+/// stereo picture; empty: the first that has a colour. An error names the channels that were found and what was looked
+/// for, without the file name.
 [[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names,
                                                   const std::string& view = {});
 

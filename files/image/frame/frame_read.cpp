@@ -30,6 +30,19 @@ bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
     return column >= 0 && row >= 0 && column < part.width && row < part.height;
 }
 
+// How far away a projection has depth 0, or 1 where depth is reversed.
+std::optional<double> near_clip(const Matrix& projection) {
+    // Depth is (m - a d) / (e d + b) at the distance d.
+    const double a = projection[10], m = projection[14], e = -double{projection[11]}, b = projection[15];
+    double near = std::numeric_limits<double>::infinity();
+    for (const double depth : {0.0, 1.0}) {
+        const double distance = (m - depth * b) / (a + depth * e);
+        if (distance > 0) near = std::min(near, distance);
+    }
+    if (!std::isfinite(near)) return std::nullopt;
+    return near;
+}
+
 class FrameReader {
   public:
     FrameReader(Decoder& decoder, const FrameOptions& options) : decoder_(decoder), options_(options) {}
@@ -73,6 +86,7 @@ class FrameReader {
     FrameFile frame_;
     std::vector<LayerPlace> places_;  // of what is read
     bool is_vray_ = false;
+    bool has_projection_ = false;           // a matrix, and not a field of view alone
     TransferCurve curve_;                   // of the colour
     std::optional<ColorMatrix> to_rec709_;  // of its light; none: it is that
     std::optional<Matrix> vray_normals_;    // world to camera, of what V-Ray wrote
@@ -268,12 +282,11 @@ void FrameReader::finish_depth() {
     }
 }
 
-// The length of a ray to its distance along the view axis, which the camera tells.
+// The length of a ray from the near clip on to the distance along the view axis, which the camera tells.
 void FrameReader::make_depth_planar() {
     if (!frame_.depth || !found_.is_depth_along_ray) return;
     const std::optional<Matrix>& projection = frame_.camera.projection;
-    const bool is_perspective = projection && (*projection)[11] != 0 && (*projection)[0] != 0 && (*projection)[5] != 0;
-    if (!is_perspective) {
+    if (!projection || (*projection)[0] == 0 || (*projection)[5] == 0) {
         frame_.warnings.push_back(
             fmt::format("{}.T is the length of a ray, and no camera is known that makes it depth: "
                         "left out; --fov or --camera tells one",
@@ -282,14 +295,18 @@ void FrameReader::make_depth_planar() {
         return;
     }
     const Matrix& p = *projection;
+    constexpr double of_mitsuba = 0.01;  // in the file's unit, unless a scene says another
+    const double near =
+        (has_projection_ ? near_clip(p) : std::nullopt).value_or(of_mitsuba * options_.depth_scale.value_or(1));
+    const bool is_parallel = p[11] == 0;
     const std::uint32_t width = frame_.color.width, height = frame_.color.height;
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
             float& value = frame_.depth->values[std::size_t{y} * width + x];
             if (value >= 1e9F) continue;
-            const double right = ((2 * x + 1.0) / width - 1 + double{p[8]}) / double{p[0]};
-            const double up = ((2 * y + 1.0) / height - 1 + double{p[9]}) / double{p[5]};
-            value = static_cast<float>(value / std::sqrt(1 + right * right + up * up));
+            const double right = is_parallel ? 0 : ((2 * x + 1.0) / width - 1 + double{p[8]}) / double{p[0]};
+            const double up = is_parallel ? 0 : ((2 * y + 1.0) / height - 1 + double{p[9]}) / double{p[5]};
+            value = static_cast<float>(near + value / std::sqrt(1 + right * right + up * up));
         }
 }
 
@@ -455,7 +472,8 @@ Result<> FrameReader::read_camera_of_file() {
         camera.projection.reset();
         camera.vertical_field_of_view = options_.vertical_field_of_view;
     }
-    if (!camera.projection && camera.vertical_field_of_view)
+    has_projection_ = camera.projection.has_value();
+    if (!has_projection_ && camera.vertical_field_of_view)
         camera.projection = perspective(*camera.vertical_field_of_view, aspect);
     widen_camera();
     // What a flag has replaced may have been anything.
