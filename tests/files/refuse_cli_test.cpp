@@ -76,6 +76,9 @@ TEST_F(CliRefuse, CameraFilesThroughWhichNothingIsSeen) {
     write("c.toml", "");
     expect("world_to_camera = " + zeros, "world_to_camera: all 16 numbers are 0: allowed is a matrix with an inverse");
     expect("camera_to_world = " + zeros, "camera_to_world: all 16 numbers are 0");
+    for (const char* const last : {"0,0,0,0.5", "0,0,0.1,1"})
+        expect(fmt::format("camera_to_world = [1,0,0,4, 0,1,0,5, 0,0,1,6, {}]\n", last),
+               "camera_to_world: a rotation and a translation are needed");
     expect("projection = " + zeros, "projection: all 16 numbers are 0");
     expect("projection = [1,0,0,0, 0,nan,0,0, 0,0,1,0, 0,0,0,1]\n", "projection: number 6 of 16 is nan");
     expect("fov = nan\n", "fov: a number of degrees in (0, 180)");

@@ -29,6 +29,7 @@ std::optional<Matrix> matrix(const toml::node& node) {
 
 // The inverse of a rotation and a translation; a camera is not scaled.
 std::optional<Matrix> rigid_inverse(const Matrix& m) {
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || std::abs(m[15] - 1) > 1e-2f) return std::nullopt;
     Matrix result{};
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 3; ++column) {
