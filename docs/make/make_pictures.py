@@ -200,7 +200,7 @@ class Window:
         if not (maker.build / "lib/darkroom/darkroom_viewer").exists():
             raise LeftOut("darkroom_viewer is not built")
         self.room = maker.work / "window"
-        self.room.mkdir()
+        self.room.mkdir(exist_ok=True)
         # Panels as they lie at first, whatever who calls this has made of them. The window's frame needs room, too.
         self.environment = os.environ | {"XDG_CONFIG_HOME": str(self.room / "config")}
         read, write = os.pipe()
@@ -407,16 +407,24 @@ class Maker:
             window.point(0.4, 0.4)
             window.picture(place("viewer_compare.jpg"), middle)
             window.click("view/compare")
-            window.click("tab/Images")
-            window.click("image/normals/0")
-            window.point(0.5, 0.4)
-            window.picture(place("viewer_images.jpg"), middle)
             window.click("tab/Pixel")
             window.point(0.57, 0.3)
             window.press()
             window.place("pixel/values")
             window.picture(place("viewer_pixel.jpg"), middle)
-            window.xdotool("key", "Escape")
+        finally:
+            window.close()
+        window = Window(self, size)
+        try:
+            look = self.work / "blurred.toml"
+            look.write_text("format = 1\n" + "".join(
+                f'[[stack]]\neffect = "{name}"\n' for name in ("motion_blur", "tonemap", "encode")))
+            window.open(tree / "proof/lab/scenes/disocclusion.scene.toml", "--look", look, "--fps", 24, "--time", 1)
+            window.key("p", "P pause: on")
+            window.click("tab/Images")
+            window.click("image/velocity/0")
+            window.point(0.5, 0.4)
+            window.picture(place("viewer_images.jpg"), middle)
         finally:
             window.close()
 

@@ -14,6 +14,8 @@ enum class PaneTransfer : std::uint32_t {
     Encoded,      ///< sRGB-encoded already: shown as it is
     SceneLinear,  ///< linear Rec. 709, 1 is white: sRGB-encoded to be shown
     Raw,          ///< data: [low, high] becomes black to white, without a transfer function
+    /// Where a thing was less where it is, in pixels, y down: a wheel of hues, full at `high` pixels, and arrows.
+    Motion,
 };
 
 /// A grey picture of one of them, or all three.
@@ -24,7 +26,7 @@ struct PaneView {
     /// as floats. Only view, format, extent, region and layout are read; of one that is not given nothing is drawn.
     ImageRef image;
     PaneTransfer transfer = PaneTransfer::Encoded;
-    float low = 0, high = 1;  ///< PaneTransfer::Raw
+    float low = 0, high = 1;  ///< PaneTransfer::Raw, Motion
 };
 
 /// Texture coordinates (0, 0) to (1, 1) are the image's region.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "window/pane.hpp"
 
+#include <numbers>
 #include <random>
 
 #include "panels/show/false_color.hpp"
@@ -110,6 +111,45 @@ TEST_F(WindowGpuPane, ShowsNumbersAsThePaneSays) {
                                         static_cast<int>(channels), exposure, x, y));
                 if (HasFailure()) return;
             }
+}
+
+// A wheel whose hues are those of HSV (A. R. Smith, "Color Gamut Transform Pairs", 1978), turned from red at the right
+// against the clock, and as much light as there is motion.
+TEST_F(WindowGpuPane, ShowsMotionAsAWheelOfHues) {
+    const double full = 8, tau = 2 * std::numbers::pi;
+    for (int i = 0; i < 12; ++i)
+        for (const double far : {0.04, 0.5, 1.0, 3.0}) {
+            const double angle = i * tau / 12;
+            // Previous minus present, y down.
+            const std::array motion{static_cast<float>(-std::cos(angle) * far * full),
+                                    static_cast<float>(std::sin(angle) * far * full), 0.0F, 0.0F};
+            const Picture picture =
+                upload(context, make_pixels(width, height, [&](std::uint32_t, std::uint32_t) { return motion; }),
+                       VK_FORMAT_R32G32B32A32_SFLOAT);
+            const Pixels shown =
+                show({.view = {reference(picture), PaneTransfer::Motion, 0, static_cast<float>(full)}}, 6);
+            const double sixth = angle / tau * 6, rising = std::fmod(sixth, 1.0), falling = 1 - rising;
+            const std::array<Rgb, 6> of_sixth{
+                {{1, rising, 0}, {falling, 1, 0}, {0, 1, rising}, {0, falling, 1}, {rising, 0, 1}, {1, 0, falling}}};
+            const Rgb hue = of_sixth[static_cast<std::size_t>(sixth + 1e-9) % 6];
+            const std::string what = fmt::format("{} degrees, {} of the fullest", i * 30, far);
+            // In a corner of a cell of 24 pixels, whose arrow is in its middle.
+            const std::array<float, 4> corner = shown.at(1, 1);
+            const bool is_seam = rising < 1e-6 || falling < 1e-6;  // one sixth or the other: alike but for rounding
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(corner[c] * 255, encode(hue[c] * std::min(far, 1.0)) * 255, is_seam ? 1.5 : 1) << what;
+            // Along the arrow it is white, at either side of it not.
+            const double x = std::cos(angle), y = -std::sin(angle);
+            const auto white = [&](double along, double beside) {
+                const std::array<float, 4> texel = shown.at(static_cast<std::uint32_t>(36 + along * x - beside * y),
+                                                            static_cast<std::uint32_t>(12 + along * y + beside * x));
+                return std::min({texel[0], texel[1], texel[2]});
+            };
+            if (far < 1) continue;
+            EXPECT_GT(white(4, 0), 0.7) << what;
+            EXPECT_LT(white(-8, 4), 0.1) << what << ": no head at its start";
+            EXPECT_GT(white(7, 3), 0.1) << what << ": the head";
+        }
 }
 
 TEST_F(WindowGpuPane, ShowsEncodedBytesUnchanged) {

@@ -16,8 +16,6 @@ constexpr int relevant = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
 
 constexpr std::array table{
     Key{GLFW_KEY_F1, 0, KeyAction::DebugView, "F1", "the next debug view: wireframe, normals, depth ..."},
-    Key{GLFW_KEY_F2, 0, KeyAction::WireframeOverlay, "F2", "edges of all triangles over the picture"},
-    Key{GLFW_KEY_F3, 0, KeyAction::NormalArrows, "F3", "an arrow for the normal of every vertex"},
     Key{GLFW_KEY_F4, 0, KeyAction::Shadows, "F4", "shadows"},
     Key{GLFW_KEY_F6, 0, KeyAction::All, "F6",
         "all post-processing, on and off; off, a scene shows its own curve at the look's exposure"},

@@ -15,8 +15,6 @@ namespace app {
 
 enum class KeyAction : std::uint8_t {
     DebugView,
-    WireframeOverlay,
-    NormalArrows,
     Shadows,
     Effect,  ///< those that a description gives this key
     All,

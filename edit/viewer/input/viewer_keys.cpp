@@ -66,10 +66,6 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             draw_.debug = static_cast<render::DebugView>(next);
             return tell(fmt::format("F1 debug view: {}", debug_views[next]));
         }
-        case KeyAction::WireframeOverlay:
-            return flip(draw_.has_wireframe_overlay, "F2 edges");
-        case KeyAction::NormalArrows:
-            return flip(draw_.has_normal_arrows, "F3 normals");
         case KeyAction::Shadows:
             return flip(draw_.has_shadows, "F4 shadows");
         case KeyAction::All:

@@ -280,6 +280,10 @@ void EditPanels::draw_images(const Input& input) {
             const std::string row = fmt::format("{}  {}x{}", name, std::max(image.extent.width >> level, 1U),
                                                 std::max(image.extent.height >> level, 1U));
             if (ImGui::Selectable(row.c_str(), image.name == image_ && level == level_)) {
+                const bool is_motion = image.name.ends_with("velocity") || image.name.ends_with("motion");
+                if (is_motion != (image_view_.transfer == PaneTransfer::Motion))
+                    image_view_ = {.transfer = is_motion ? PaneTransfer::Motion : PaneTransfer::SceneLinear,
+                                   .high = is_motion ? 8.0F : 1.0F};
                 image_ = image.name;
                 level_ = level;
             }
@@ -298,13 +302,23 @@ void EditPanels::draw_images(const Input& input) {
         else if (input.watch_state == WatchState::NotInPlan)
             ImGui::TextWrapped("Coming with the next plan ...");
         darkroom::window::PaneView& view = image_view_;
-        int transfer = view.transfer == PaneTransfer::Raw ? 1 : 0;
-        ImGui::RadioButton("as light", &transfer, 0);
+        const auto choice = [&](const char* name, PaneTransfer transfer, float high) {
+            if (ImGui::RadioButton(name, view.transfer == transfer) && view.transfer != transfer) {
+                view.transfer = transfer;
+                view.low = 0;
+                view.high = high;
+            }
+            look_.note_place(fmt::format("image/{}", name));
+        };
+        choice("as light", PaneTransfer::SceneLinear, 1);
         ImGui::SameLine();
-        ImGui::RadioButton("as numbers", &transfer, 1);
-        view.transfer = transfer == 1 ? PaneTransfer::Raw : PaneTransfer::SceneLinear;
+        choice("as numbers", PaneTransfer::Raw, 1);
+        ImGui::SameLine();
+        choice("as motion", PaneTransfer::Motion, 8);
         if (view.transfer == PaneTransfer::Raw)
             ImGui::DragFloatRange2("black, white", &view.low, &view.high, 0.01F, -1e6F, 1e6F, "%.3f", "%.3f");
+        if (view.transfer == PaneTransfer::Motion)
+            ImGui::DragFloat("pixels: full", &view.high, 0.1F, 0.01F, 1e4F, "%.2f");
         ImGui::TextWrapped("Exposure and channels are above the picture.");
     }
     ImGui::EndChild();

@@ -32,7 +32,6 @@ namespace {
 /// The exposure is the display's alone.
 bool is_equal(const render::DrawOptions& a, const render::DrawOptions& b, bool is_display) {
     return a.has_shadows == b.has_shadows && a.has_grid == b.has_grid && a.debug == b.debug &&
-           a.has_wireframe_overlay == b.has_wireframe_overlay && a.has_normal_arrows == b.has_normal_arrows &&
            (!is_display || a.exposure == b.exposure);
 }
 
