@@ -12,6 +12,13 @@ float smaa_difference(vec3 a, vec3 b) {
     return max(apart.r, max(apart.g, apart.b));
 }
 
+// Does what differs here go on to differ the same way on one of the sides? Then it is smooth already: a soft shadow, or an
+// edge that was drawn with more samples than one.
+const float smaa_slope = 0.75;
+bool smaa_is_slope(vec3 before, vec3 step, vec3 behind) {
+    return max(dot(before, step), dot(step, behind)) >= smaa_slope * dot(step, step);
+}
+
 vec4 smaa_detected(ivec2 texel, vec2 threshold) {
     ivec2 limit = size(smaa_picture) - 1, before = max(texel - 1, 0), behind = min(texel + 1, limit);
     ivec2 further = max(texel - 2, 0);
@@ -19,13 +26,14 @@ vec4 smaa_detected(ivec2 texel, vec2 threshold) {
     vec2 apart = vec2(smaa_difference(own, left), smaa_difference(own, top));
     bvec2 is_edge = greaterThanEqual(apart, threshold);
     if (!any(is_edge)) return vec4(0.0, 0.0, 0.0, 1.0);
-    float most = max(max(apart.x, apart.y),
-                     max(max(smaa_difference(own, smaa_seen(ivec2(behind.x, texel.y))),
-                             smaa_difference(own, smaa_seen(ivec2(texel.x, behind.y)))),
-                         max(smaa_difference(left, smaa_seen(ivec2(further.x, texel.y))),
-                             smaa_difference(top, smaa_seen(ivec2(texel.x, further.y))))));
+    vec3 right = smaa_seen(ivec2(behind.x, texel.y)), bottom = smaa_seen(ivec2(texel.x, behind.y));
+    vec3 further_left = smaa_seen(ivec2(further.x, texel.y)), further_top = smaa_seen(ivec2(texel.x, further.y));
+    float most = max(max(apart.x, apart.y), max(max(smaa_difference(own, right), smaa_difference(own, bottom)),
+                                                max(smaa_difference(left, further_left), smaa_difference(top, further_top))));
     bvec2 is_seen = greaterThanEqual(apart * smaa_parameters().contrast, vec2(most));
-    return vec4(vec2(is_edge) * vec2(is_seen), 0.0, 1.0);
+    bvec2 is_slope = bvec2(smaa_is_slope(left - further_left, own - left, right - own),
+                           smaa_is_slope(top - further_top, own - top, bottom - own));
+    return vec4(vec2(is_edge) * vec2(is_seen) * (1.0 - vec2(is_slope)), 0.0, 1.0);
 }
 
 #part edges
@@ -182,10 +190,9 @@ vec2 smaa_pair(vec2 at, bool is_upright) {
     return is_upright ? edges.gr : edges.rg;
 }
 
-// What crosses the row at a pixel (2) and at the next (1), by one tap between them.
-int smaa_crossings(vec2 first, vec2 onward, bool is_upright) {
-    vec2 edges = sample_linear(smaa_edges, (first + onward / 3.0) / vec2(size(smaa_edges))).rg;
-    return int((is_upright ? edges.g : edges.r) * 3.0 + 0.5);
+// Of a pixel behind a crossing (8), the next (2), and the two of the row against `across` (4 and 1).
+ivec2 smaa_beyond(vec2 at, vec2 onward, vec2 across, bool is_upright) {
+    return ivec2(smaa_pair((at + 0.2 * onward - across / 3.0) / vec2(size(smaa_edges)), is_upright) + 0.5);
 }
 
 // A search, pair of pixels after pair. `middle` is that of the pixel, `onward` leads from it to the next, `across` to the other
@@ -222,11 +229,14 @@ SmaaEnd smaa_end(vec2 middle, vec2 onward, vec2 across, bool is_upright, bool is
         vec2 crossed = middle + onward * (end.distance + (is_back ? 0.0 : 1.0));
         vec2 own = crossed - across, other = crossed + 2.0 * across, row = end.crosses.y ? other : own;
         bool is_both = all(end.crosses);
-        int first = smaa_crossings(row, onward, is_upright);
-        int second = smaa_crossings(is_both ? own : row + 2.0 * onward, onward, is_upright);
-        int of_own = is_both ? second : first;
-        end.is_corner = bvec2(end.crosses.x && (of_own & 2) != 0, end.crosses.y && (first & 2) != 0);
-        if (!is_both) end.next = (first & 1) != 0 ? 1.0 : second > 1 ? 2.0 : second == 1 ? 3.0 : smaa_unseen;
+        ivec2 first = smaa_beyond(row, onward, across, is_upright);
+        ivec2 second = smaa_beyond(is_both ? own : row + 2.0 * onward, onward, across, is_upright);
+        // A line a pixel wide has an edge between both pixels that are crossed: that is a step of it, and no corner.
+        ivec2 of_own = is_both ? second : first;
+        end.is_corner = bvec2(end.crosses.x && (of_own.x & 8) != 0 && (of_own.y & 8) == 0,
+                              end.crosses.y && (first.x & 8) != 0 && (first.y & 4) == 0);
+        if (!is_both)
+            end.next = (first.x & 2) != 0 ? 1.0 : (second.x & 8) != 0 ? 2.0 : (second.x & 2) != 0 ? 3.0 : smaa_unseen;
     }
     return end;
 }

@@ -30,6 +30,8 @@ constexpr SmaaSteps smaa_steps(SmaaQuality quality) {
 
 /// Jumps of the inverse distance, as a part of the larger one, that predication takes for the edge of a thing.
 inline constexpr double smaa_depth_jump = 0.05;
+/// By so much of itself a step goes on beside it where it is a slope, smooth already.
+inline constexpr double smaa_slope = 0.75;
 /// Steps of a stair, a side each, that make a diagonal: a corner has two, a step of two pixels beside one has three.
 inline constexpr int smaa_least_diagonal = 5;
 
@@ -62,12 +64,24 @@ class SmaaReference {
     struct Weights {
         double up = 0, of_above = 0, left = 0, of_left = 0;
     };
-    double difference(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
+    using Step = std::array<double, 3>;
+    /// What is compared, from (i, j) to (x, y).
+    Step step(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
         const Rgba &a = picture_.clamped(x, y), &b = picture_.clamped(i, j);
-        if (smaa_.detection == SmaaDetection::Color)
-            return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+        if (smaa_.detection == SmaaDetection::Color) return {a.r - b.r, a.g - b.g, a.b - b.b};
         const auto luma = [](const Rgba& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; };
-        return std::abs(luma(a) - luma(b));
+        return {luma(a) - luma(b), 0, 0};
+    }
+    double difference(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
+        const Step apart = step(x, y, i, j);
+        return std::max({std::abs(apart[0]), std::abs(apart[1]), std::abs(apart[2])});
+    }
+    /// Does what differs between (x, y) and the one before, (dx, dy) away, go on the same way on one of the sides?
+    bool is_slope(std::int64_t x, std::int64_t y, std::int64_t dx, std::int64_t dy) const {
+        const Step before = step(x + dx, y + dy, x + 2 * dx, y + 2 * dy), own = step(x, y, x + dx, y + dy),
+                   behind = step(x - dx, y - dy, x, y);
+        const auto product = [](const Step& a, const Step& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+        return std::max(product(before, own), product(own, behind)) >= smaa_slope * product(own, own);
     }
 
     double threshold(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
@@ -88,7 +102,8 @@ class SmaaReference {
         const double most = std::max({left, top, difference(x, y, x + 1, y), difference(x, y, x, y + 1),
                                       difference(x - 1, y, x - 2, y), difference(x, y - 1, x, y - 2)});
         const double contrast{smaa_.contrast};
-        return {is_left && left * contrast >= most, is_top && top * contrast >= most};
+        return {is_left && left * contrast >= most && !is_slope(x, y, -1, 0),
+                is_top && top * contrast >= most && !is_slope(x, y, 0, -1)};
     }
 
     Edges edges(std::int64_t x, std::int64_t y) const {
@@ -128,8 +143,9 @@ class SmaaReference {
         end.height = is_own == is_across ? 0 : is_across ? 0.5 : -0.5;
         end.crosses_both = is_own && is_across;
         if (!is_own && !is_across) return end;
-        end.is_corner_own = is_own && at(crossing(), 1).left;
-        end.is_corner_across = is_across && at(crossing(), -2).left;
+        // A line a pixel wide has an edge between both pixels that are crossed: that is a step of it, and no corner.
+        end.is_corner_own = is_own && at(crossing(), 1).left && !at(crossing(), 1).top;
+        end.is_corner_across = is_across && at(crossing(), -2).left && !at(crossing(), -1).top;
         for (std::int64_t k = 1; k < 4 && end.next == 4 && !end.crosses_both; ++k)
             if (at(crossing() + direction * k, is_across ? -2 : 1).left) end.next = k;
         return end;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/shared/srgb_reference.hpp"
 #include "image/frame/frame_file.hpp"
 #include "tests/cli/cli_support.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
@@ -189,6 +191,63 @@ TEST_F(CliRenderHaze, HasTheLightsColourUnlessItHasItsOwn) {
 TEST_F(CliRenderHaze, ALightWithoutVolumetricIntensityAddsNothing) {
     EXPECT_EQ(haze("intensity = 7\nvolumetric_color = [9, 9, 9]"), (std::array{0.0, 0.0, 0.0})) << "0 is the default";
     EXPECT_EQ(haze("intensity = 7\nvolumetric_intensity = 0"), (std::array{0.0, 0.0, 0.0}));
+}
+
+/// The six scenes that ship, of one sample a pixel, against the light that 16 show.
+class SoakRenderEdges : public test::CliFixture {
+  protected:
+    void SetUp() override {
+        for (const char* const name : {"fxaa", "smaa", "dither"})
+            if (find_effect(name) == nullptr) GTEST_SKIP() << "the effect " << name << " is not in this build";
+        CliFixture::SetUp();
+    }
+    [[nodiscard]] Picture shown(const std::string& scene, const std::string& size,
+                                const std::vector<std::string>& flags) const {
+        std::vector<std::string> words{"render", std::string(test::source_folder) + "/scenes/" + scene + ".scene.toml",
+                                       "-q",     "--size",
+                                       size,     "--samples",
+                                       "1",      "--no-dither",
+                                       "-o",     path("shown.png")};
+        words.insert(words.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return picture("shown.png");
+    }
+    /// The mean light of every 4x4 pixels, as code values.
+    [[nodiscard]] static Picture mean_of(const Picture& large) {
+        Picture out(large.width / 4, large.height / 4);
+        for (std::uint32_t y = 0; y < out.height; ++y)
+            for (std::uint32_t x = 0; x < out.width; ++x)
+                for (std::uint32_t c = 0; c < 3; ++c) {
+                    double light = 0;
+                    for (std::uint32_t k = 0; k < 16; ++k)
+                        light += srgb_decoded(double{large.at(4 * x + k % 4, 4 * y + k / 4)[c]}) / 16;
+                    out.at(x, y)[c] = static_cast<float>(srgb_encoded(light));
+                }
+        return out;
+    }
+};
+
+TEST_F(SoakRenderEdges, AreNearerToManySamplesThanWithoutAFilter) {
+    for (const char* const scene : {"dungeon", "courtyard", "interior", "street", "forge", "showcase"}) {
+        const Picture truth = mean_of(shown(scene, "2560x1440", {"--no-fxaa"}));
+        const std::array<Picture, 3> made{shown(scene, "640x360", {"--no-fxaa"}), shown(scene, "640x360", {"--fxaa"}),
+                                          shown(scene, "640x360", {"--no-fxaa", "--smaa"})};
+        // Where a filter changes anything that is seen.
+        std::array<double, 3> errors{};
+        for (std::size_t i = 0; i < truth.pixels.size(); i += 4) {
+            const auto apart = [&](const Picture& a, const Picture& b, std::size_t c) {
+                return std::abs(double{a.pixels[i + c]} - double{b.pixels[i + c]});
+            };
+            bool is_changed = false;
+            for (std::size_t c = 0; c < 3; ++c)
+                is_changed |= apart(made[1], made[0], c) > 8.0 / 255 || apart(made[2], made[0], c) > 8.0 / 255;
+            for (std::size_t of = 0; is_changed && of < 3; ++of)
+                for (std::size_t c = 0; c < 3; ++c) errors[of] += apart(made[of], truth, c);
+        }
+        EXPECT_LT(errors[1], errors[0]) << scene << ", fxaa";
+        EXPECT_LT(errors[2], errors[0]) << scene << ", smaa";
+    }
 }
 
 }  // namespace
