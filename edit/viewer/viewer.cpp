@@ -110,6 +110,7 @@ Result<LookView*> Viewer::view(Side side) {
                                                                     .kernels = job_.kernels,
                                                                     .fuse = job_.fuse,
                                                                     .makes_light = is_high_range(),
+                                                                    .keeps_what_is_off = !is_fixed(),
                                                                     .enlarges = job_.frame_time.has_value(),
                                                                     .timeline = timeline});
     DARKROOM_TRY(made->show(look_of(side)));

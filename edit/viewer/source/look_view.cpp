@@ -2,6 +2,7 @@
 #include "look_view.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gpu/device/context.hpp"
 #include "plan/frame_inputs.hpp"
@@ -43,9 +44,14 @@ LookView::LookView(darkroom::Device& device, Desc desc)
 }
 
 Result<> LookView::show(const darkroom::Look& look) {
-    DARKROOM_TRY_VALUE(
-        const darkroom::Followed followed,
-        darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.timeline.entries()}));
+    keeps_what_is_off_ = desc_.keeps_what_is_off;
+    return follow(look);
+}
+
+Result<> LookView::follow(const darkroom::Look& look) {
+    DARKROOM_TRY_VALUE(const darkroom::Followed followed,
+                       darkroom::follow(shown_, look, composer_,
+                                        {.keeps_what_is_off = keeps_what_is_off_, .keeps = desc_.timeline.entries()}));
     shown_ = look;
     desc_.timeline.follow(look);
     is_of_look_ = false;
@@ -56,6 +62,8 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui,
     CompileDesc wanted = source.compile_desc({});
     // A source that was read again knows its formats when it is prepared.
     if (wanted.color.format == VK_FORMAT_UNDEFINED) return {};
+    // What is off parts the kernels of what is on, and with them go bits.
+    if (is_kept && std::exchange(keeps_what_is_off_, false)) DARKROOM_TRY(follow(darkroom::Look(shown_)));
     wanted.kernels = desc_.kernels;
     wanted.fuse = desc_.fuse;
     if (desc_.makes_light) {

@@ -20,9 +20,10 @@ class LookView {
         std::uint32_t frames_in_flight = 2;
         darkroom::KernelStage kernels = darkroom::KernelStage::Auto;
         bool fuse = true;
-        bool makes_light = false;  ///< in place of code values of sRGB, for a window of high range
-        bool enlarges = false;     ///< frames may be smaller than the pictures of them
-        Timeline timeline;         ///< what happens to the look
+        bool makes_light = false;       ///< in place of code values of sRGB, for a window of high range
+        bool keeps_what_is_off = true;  ///< so that a key switches it on in the next frame
+        bool enlarges = false;          ///< frames may be smaller than the pictures of them
+        Timeline timeline;              ///< what happens to the look
     };
     LookView(darkroom::Device& device, Desc desc);
 
@@ -31,7 +32,7 @@ class LookView {
     [[nodiscard]] darkroom::Result<> show(const darkroom::Look& look);
     /// Makes room for frames of this source and extent: the first time at once, later beside the frames. To be called
     /// in every frame. `ui`: of the interface's image; UNDEFINED: there is none. `is_kept`: the picture is one to keep,
-    /// so that a plan of this very extent is made without a wait for other sizes.
+    /// bit for bit what develop makes: a plan of this very extent, without a wait for other sizes, and of what is on.
     [[nodiscard]] darkroom::Result<> fit(const LiveSource& source, VkExtent2D extent, VkFormat ui,
                                          bool is_kept = false);
     /// The largest that frames may be now, whichever of the plans under way the next record takes.
@@ -67,6 +68,7 @@ class LookView {
 
   private:
     [[nodiscard]] darkroom::ImageRef reference() const;
+    [[nodiscard]] darkroom::Result<> follow(const darkroom::Look& look);
     [[nodiscard]] darkroom::Result<> compile(const darkroom::CompileDesc& desc);
     void change_layout(VkCommandBuffer commands, VkImageLayout from, VkImageLayout to) const;
 
@@ -74,6 +76,7 @@ class LookView {
     Desc desc_;
     darkroom::Composer composer_;
     darkroom::Look shown_;
+    bool keeps_what_is_off_ = true;   ///< else the plan is the one that develop makes
     darkroom::CompileDesc compiled_;  ///< asked for last
     bool is_compiled_ = false;
     VkExtent2D last_extent_{};
