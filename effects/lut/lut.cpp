@@ -19,8 +19,8 @@ constexpr auto lut_rows =
              field<&Lut::fade_to>("Second table for the same space, which `fade` fades to."),
              field<&Lut::fade>("Share of the second table in the result.", {0, 1}),
              field<&Lut::strength>("Share of the result that goes over the picture.", {0, 1}),
-             field<&Lut::space>("Colours that the tables expect: sRGB code values, or scene-linear light, as it is or "
-                                "through a curve of a camera."),
+             field<&Lut::space>("Colours that the tables expect: sRGB code values, or scene-linear light, as it is "
+                                "(`linear`), in stops or through a curve of a camera."),
              field<&Lut::result>(
                  "Colours that the tables give: the same kind that they expect, or sRGB code values for a display."),
              field<&Lut::interpolation>("Interpolation between the entries of a 3D table."));

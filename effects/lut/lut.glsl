@@ -92,6 +92,7 @@ vec3 lut_display_light(vec3 code) {
 vec3 lut_encode(vec3 light, uint space) {
     if (space == Lut_space_display) return lut_display_code(light);
     light = sanitize(vec4(light, 0.0)).rgb;
+    if (space == Lut_space_linear) return light;
     if (space == Lut_space_acescct) return acescct_encode(light);
     if (space == Lut_space_logc3) return logc3_encode(light);
     if (space == Lut_space_slog3) return slog3_encode(light);
@@ -103,6 +104,7 @@ vec3 lut_encode(vec3 light, uint space) {
 
 vec3 lut_decode(vec3 value, uint space) {
     if (space == Lut_space_display) return lut_display_light(value);
+    if (space == Lut_space_linear) return sanitize(vec4(value, 0.0)).rgb;
     if (space == Lut_space_acescct) return acescct_decode(value);
     if (space == Lut_space_logc3) return logc3_decode(value);
     if (space == Lut_space_slog3) return slog3_decode(value);

@@ -11,7 +11,17 @@ namespace darkroom {
 struct EffectInfo;
 
 /// What a table is given; see lut.md for curves and primaries.
-enum class LutSpace : std::uint32_t { Display, SceneLinear, Acescct, Logc3, Slog3, Logc4, Vlog, DavinciIntermediate };
+enum class LutSpace : std::uint32_t {
+    Display,
+    SceneLinear,
+    Acescct,
+    Logc3,
+    Slog3,
+    Logc4,
+    Vlog,
+    DavinciIntermediate,
+    Linear
+};
 /// What a table gives.
 enum class LutResult : std::uint32_t { Same, Display };
 enum class LutInterpolation : std::uint32_t { Tetrahedral, Trilinear };
@@ -25,8 +35,8 @@ struct Lut {
     float fade = 0.0f;
     /// Share of the result that goes over the picture. [0, 1]
     float strength = 1.0f;
-    /// Colours that the tables expect: sRGB code values, or scene-linear light, as it is or through a curve of a
-    /// camera.
+    /// Colours that the tables expect: sRGB code values, or scene-linear light, as it is (`linear`), in stops or
+    /// through a curve of a camera.
     LutSpace space = LutSpace::Display;
     /// Colours that the tables give: the same kind that they expect, or sRGB code values for a display.
     LutResult result = LutResult::Same;

@@ -84,6 +84,8 @@ inline double encode(double x, LutSpace space) {
             return x >= 0.01 ? 0.241514 * std::log10(x + 0.00873) + 0.598206 : 5.6 * x + 0.125;
         case LutSpace::DavinciIntermediate:
             return x > 0.00262409 ? (std::log2(x + 0.0075) + 7) * 0.07329248 : 10.44426855 * x;
+        case LutSpace::Linear:
+            break;
     }
     return x;
 }
@@ -110,6 +112,8 @@ inline double decode(double v, LutSpace space) {
             return v >= 0.181 ? std::pow(10, (v - 0.598206) / 0.241514) - 0.00873 : (v - 0.125) / 5.6;
         case LutSpace::DavinciIntermediate:
             return v > 0.02740668 ? std::exp2(v / 0.07329248 - 7) - 0.0075 : v / 10.44426855;
+        case LutSpace::Linear:
+            break;
     }
     return v;
 }

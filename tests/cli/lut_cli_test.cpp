@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -10,6 +11,7 @@
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
 #include "image/table/table_file.hpp"
+#include "tables/evaluate.hpp"
 
 namespace darkroom {
 namespace {
@@ -191,6 +193,77 @@ std::string clf_curve(const std::string& entries) {
 const std::string clf_matrix =
     "<Matrix inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"3 3\">0.8 0.1 0.1 0.2 0.7 0.1 0 0.3 "
     "0.7</Array></Matrix>\n";
+
+TEST_F(CliLut, LinearTablesTakeLightAsItIs) {
+    write("light.cube", "LUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 8 8 8\n0 0 0\n4 2 1\n");
+    write("plain.toml", "format = 1\n[[stack]]\neffect = \"exposure\"\n");
+    const auto develop = [&](std::vector<std::string> flags, const std::string& out) {
+        flags.insert(flags.begin(), {"develop", path("frame.exr"), "--look", path("plain.toml"), "--bits", "float"});
+        flags.insert(flags.end(), {"-o", path(out)});
+        expect_done(flags);
+        return picture(out);
+    };
+    const Picture light = develop({}, "light.exr");
+    write("plain.toml", "format = 1\n[[stack]]\neffect = \"lut\"\nlut = \"light.cube\"\nspace = \"linear\"\n");
+    const Picture found = develop({}, "found.exr"), reference = develop({"--reference"}, "reference.exr");
+    ASSERT_EQ(found.pixels.size(), light.pixels.size());
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        const double expected = i % 4 == 3 ? 1 : std::min(double{light.pixels[i]}, 8.0) / std::exp2(i % 4 + 1);
+        ASSERT_NEAR(double{found.pixels[i]}, expected, 1e-3 * expected) << i;
+        ASSERT_NEAR(double{reference.pixels[i]}, expected, 1e-6 * expected) << i;
+    }
+}
+
+// ffmpeg reads a table of one kind whose inputs begin at 0, as docs/recipes.md has it, and no shaper.
+TEST_F(CliLut, WhatIsWrittenIsReadByFfmpeg) {
+    if (run_lines("command -v ffmpeg").code != 0) GTEST_SKIP() << "there is no ffmpeg on this machine";
+    std::mt19937 random(5);
+    const auto number = [&] { return static_cast<float>(random() >> 8U) * 0x1p-24f; };
+    const auto table = [&](std::uint32_t shaper, std::uint32_t size, float most) {
+        ColorTable out;
+        out.shaper_size = shaper;
+        out.size = size;
+        for (std::uint32_t i = 0; i < 3 * shaper; ++i) out.shaper.push_back(number());
+        for (std::uint32_t i = 0; i < 3 * size * size * size; ++i) out.cube.push_back(number());
+        (shaper > 0 ? out.shaper_max : out.max).fill(most);
+        return out;
+    };
+    constexpr std::size_t side = 16, pixels = side * side;
+    const auto by_ffmpeg = [&](const std::string& filter) {
+        return run_lines("ffmpeg -v error -f rawvideo -pix_fmt gbrpf32le -s 16x16 -i in.raw -vf " + filter +
+                         "=film.cube -f rawvideo -pix_fmt gbrpf32le -y out.raw");
+    };
+    for (const float most : {1.0f, 3.0f}) {
+        std::vector<float> planes(3 * pixels);
+        for (float& value : planes) value = number() * 1.1f * most;
+        write("in.raw", {reinterpret_cast<const char*>(planes.data()), planes.size() * sizeof(float)});
+        for (const bool is_cube : {false, true}) {
+            const ColorTable expected = table(is_cube ? 0 : 9, is_cube ? 5 : 0, most);
+            const Result<std::string> text = write_cube({.table = expected, .title = "film"});
+            ASSERT_TRUE(text);
+            write("made.cube", *text);
+            expect_done({"lut", "convert", path("made.cube"), "-o", path("film.cube")});
+            const Outcome outcome = by_ffmpeg(is_cube ? "lut3d" : "lut1d");
+            ASSERT_EQ(outcome.code, 0) << outcome.err;
+            const std::string raw = content(path("out.raw"));
+            std::vector<float> found(raw.size() / sizeof(float));
+            std::memcpy(found.data(), raw.data(), raw.size());
+            ASSERT_EQ(found.size(), planes.size());
+            constexpr std::array<std::size_t, 3> plane{2 * pixels, 0, pixels};  // of red, green, blue
+            for (std::size_t i = 0; i < pixels; ++i) {
+                TableColor color{};
+                for (std::size_t c = 0; c < 3; ++c) color[c] = double{planes[plane[c] + i]};
+                color = evaluate(expected, color);
+                for (std::size_t c = 0; c < 3; ++c)
+                    ASSERT_NEAR(double{found[plane[c] + i]}, color[c], 2e-6) << i << ' ' << is_cube << ' ' << most;
+            }
+        }
+    }
+    const Result<std::string> both = write_cube({.table = table(7, 5, 1)});
+    ASSERT_TRUE(both);
+    write("film.cube", *both);
+    EXPECT_NE(by_ffmpeg("lut3d").code, 0) << "it is refused, not misread";
+}
 
 TEST_F(CliLut, WhatATableIsNotIsToldWhereItIsUsed) {
     // A curve of corners behind a matrix falls between the entries of every cube; a matrix alone has no end.
