@@ -279,13 +279,6 @@ TEST_F(CliBesidePixels, FurtherPicturesOfAJpegAreTold) {
     expect_told("two.jpg", "has 2 pictures: the first is read");
     write("copy.jpg", with(0x010001, plain));
     EXPECT_EQ(develop("copy.jpg").warnings, "") << "a smaller copy for displays";
-    const std::string xmp = std::string("http://ns.adobe.com/xap/1.0/\0", 29) + "<x hdrgm:Version=\"1.0\"/>";
-    const std::string iso = std::string("urn:iso:std:iso:ts:21496:-1\0", 28) + "abcd";
-    for (const std::string& mark : {segment('\xe1', xmp), segment('\xe2', iso)}) {
-        write("map.jpg", with(0, plain.substr(0, 2) + mark + plain.substr(2)));
-        expect_told("map.jpg",
-                    "has a gain map for light beyond white, which is not applied: the picture without it is read");
-    }
 }
 
 TEST_F(CliBesidePixels, RadianceOfTristimulusValuesIsRefusedByItsName) {

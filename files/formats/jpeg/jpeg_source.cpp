@@ -3,8 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
+#include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +21,8 @@
 #include "formats/attributed_source.hpp"
 #include "formats/exif.hpp"
 #include "formats/integer_rows.hpp"
+#include "formats/jpeg/gain_map.hpp"
+#include "formats/jpeg/jpeg_marks.hpp"
 
 namespace darkroom {
 namespace {
@@ -37,7 +44,8 @@ class JpegReader {
     JpegReader& operator=(const JpegReader&) = delete;
     ~JpegReader() { jpeg_destroy_decompress(&jpeg_); }
 
-    [[nodiscard]] bool read_header() {
+    /// `is_ycc`: rows of luma and chroma stay so, which are as exact as the file.
+    [[nodiscard]] bool read_header(bool is_ycc = false) {
         if (setjmp(return_) != 0) return false;
         jpeg_create_decompress(&jpeg_);
         jpeg_mem_src(&jpeg_, reinterpret_cast<const unsigned char*>(bytes_.data()), bytes_.size());
@@ -45,6 +53,8 @@ class JpegReader {
         jpeg_read_header(&jpeg_, TRUE);
         is_ink = jpeg_.jpeg_color_space == JCS_CMYK || jpeg_.jpeg_color_space == JCS_YCCK;
         if (is_ink) jpeg_.out_color_space = JCS_CMYK;
+        has_luma = is_ycc && jpeg_.jpeg_color_space == JCS_YCbCr;
+        if (has_luma) jpeg_.out_color_space = JCS_YCbCr;
         jpeg_calc_output_dimensions(&jpeg_);
         width = jpeg_.output_width;
         height = jpeg_.output_height;
@@ -75,7 +85,7 @@ class JpegReader {
     }
 
     std::uint32_t width = 0, height = 0, components = 0;
-    bool is_ink = false;
+    bool is_ink = false, has_luma = false;
     char error[JMSG_LENGTH_MAX] = {};
 
   private:
@@ -104,14 +114,17 @@ class JpegSource final : public AttributedSource {
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
         auto out = std::make_unique<JpegSource>();
         out->file_ = bytes;
+        out->map_ = find_gain_map(bytes).map;
         DARKROOM_TRY(out->begin());
         const JpegReader& jpeg = *out->jpeg_;
         if (jpeg.components != 1 && jpeg.components != 3 && !jpeg.is_ink)
             return user_error(fmt::format("has {} components: 1, 3 or 4 are read", jpeg.components));
         FilePart part{
             .width = jpeg.width, .height = jpeg.height, .display_width = jpeg.width, .display_height = jpeg.height};
-        part.channels = jpeg.components == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
-        part.kinds.assign(part.channels.size(), SampleKind::Integer8);
+        if (out->map_) DARKROOM_TRY(out->check_map());
+        const bool is_gray = jpeg.components == 1 && !out->map_;
+        part.channels = is_gray ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+        part.kinds.assign(part.channels.size(), out->map_ ? SampleKind::Float : SampleKind::Integer8);
         out->parts_.push_back(std::move(part));
         if (jpeg.orientation() != 1) out->attributes_.emplace_back("Orientation", jpeg.orientation());
         if (jpeg.aspect() != 0 && jpeg.aspect() != 1) out->attributes_.emplace_back("PixelAspectRatio", jpeg.aspect());
@@ -127,7 +140,69 @@ class JpegSource final : public AttributedSource {
         jpeg_ = std::make_unique<JpegReader>(file_);
         next_ = 0;
         has_started_ = false;
-        if (!jpeg_->read_header()) return user_error(fmt::format("cannot be read as JPEG: {}", reason()));
+        if (!jpeg_->read_header(map_.has_value()))
+            return user_error(fmt::format("cannot be read as JPEG: {}", reason()));
+        return {};
+    }
+
+    [[nodiscard]] Result<> check_map() {
+        JpegReader jpeg(map_->picture);
+        if (!jpeg.read_header()) return map_error(one_printable_line(jpeg.error));
+        if (jpeg.components != 1 && (jpeg.components != 3 || jpeg.is_ink))
+            return map_error(fmt::format("has {} components: 1 or 3 are read", jpeg.components));
+        if (jpeg.width > jpeg_->width || jpeg.height > jpeg_->height)
+            return map_error(fmt::format("is {}x{}, its picture's {}x{} is allowed", jpeg.width, jpeg.height,
+                                         jpeg_->width, jpeg_->height));
+        const TransferCurve curve = color_of_jpeg(file_).coding.value_or(ColorCoding{}).curve;
+        constexpr double most = std::tuple_size_v<decltype(light_of_code_)> - 1;
+        for (std::size_t i = 0; i < light_of_code_.size(); ++i)
+            light_of_code_[i] = static_cast<float>(curve.decode(static_cast<double>(i) / most));
+        return {};
+    }
+
+    /// All of it: a row of the picture lies between two of the map.
+    [[nodiscard]] Result<> read_map() {
+        JpegReader jpeg(map_->picture);
+        bool is_read = jpeg.read_header();
+        const std::size_t row = std::size_t{jpeg.width} * jpeg.components;
+        std::vector<std::uint8_t> samples(row * jpeg.height);
+        is_read = is_read && jpeg.start();
+        for (std::size_t y = 0; is_read && y < jpeg.height; ++y) is_read = jpeg.read_row(samples.data() + y * row);
+        if (!is_read) return map_error(fmt::format("damaged or truncated: {}", one_printable_line(jpeg.error)));
+        gain_.emplace(*map_, std::move(samples), jpeg.width, jpeg.height);
+        light_.resize(std::size_t{jpeg_->width} * 3);
+        return {};
+    }
+    [[nodiscard]] static Failure map_error(const std::string& why) { return user_error("its gain map: " + why); }
+
+    /// Between two of many codes; codes of 8 bits would be up to 2 % off in the dark.
+    [[nodiscard]] float light_of(float code) const {
+        const float place = std::clamp(code / 255, 0.0f, 1.0f) * static_cast<float>(light_of_code_.size() - 1);
+        const auto first = static_cast<std::size_t>(place);
+        const std::size_t second = std::min(first + 1, light_of_code_.size() - 1);
+        return std::lerp(light_of_code_[first], light_of_code_[second], place - static_cast<float>(first));
+    }
+
+    /// The row in `row_` as light, to its places.
+    [[nodiscard]] Result<> put_light(std::span<const SamplePlace> places, std::uint32_t row, std::uint32_t y) {
+        const std::size_t step = jpeg_->components == 1 ? 1 : 3, last = step - 1;
+        for (std::size_t x = 0; x < jpeg_->width; ++x) {
+            const std::uint8_t* const from = &row_[x * step];
+            std::array<float, 3> code{float(from[0]), float(from[last / 2]), float(from[last])};
+            if (jpeg_->has_luma) {  // ITU-T T.871, 7
+                const float luma = code[0], blue = code[1] - 128, red = code[2] - 128;
+                code = {luma + 1.402f * red, luma - 0.344136f * blue - 0.714136f * red, luma + 1.772f * blue};
+            }
+            for (std::size_t c = 0; c < 3; ++c) light_[x * 3 + c] = light_of(code[c]);
+        }
+        gain_->apply(light_, row + y, jpeg_->height);
+        for (const SamplePlace& place : places) {
+            if (place.kind != SampleKind::Float)
+                return user_error(fmt::format("light of a gain map is not read as {}", name_of(place.kind)));
+            std::byte* to = place.first + std::ptrdiff_t{y} * place.row_bytes;
+            for (std::size_t x = 0; x < jpeg_->width; ++x, to += place.pixel_bytes)
+                std::memcpy(to, &light_[x * 3 + place.channel], sizeof(float));
+        }
         return {};
     }
 
@@ -145,6 +220,7 @@ class JpegSource final : public AttributedSource {
                   std::span<const SamplePlace> places) override {
         if (has_failed_ || row < next_) DARKROOM_TRY(begin());
         has_failed_ = true;
+        if (map_ && !gain_) DARKROOM_TRY(read_map());
         for (std::uint32_t y = 0; y < rows;) {
             const bool is_wanted = next_ >= row;
             if (!decode_row())
@@ -153,6 +229,11 @@ class JpegSource final : public AttributedSource {
             if (!is_wanted) continue;
             // What is kept of a pixel is never behind what is yet to be read of it.
             if (jpeg_->is_ink) light_of_inks(row_.data(), row_.data(), jpeg_->width);
+            if (gain_) {
+                DARKROOM_TRY(put_light(places, row, y));
+                ++y;
+                continue;
+            }
             const IntegerRow decoded{.first = reinterpret_cast<const std::byte*>(row_.data()),
                                      .width = jpeg_->width,
                                      .channels = parts_[0].channels.size(),
@@ -170,6 +251,10 @@ class JpegSource final : public AttributedSource {
     std::uint32_t next_ = 0;  // row
     bool has_started_ = false, has_failed_ = false;
     std::vector<std::uint8_t> row_;
+    std::optional<GainMap> map_;
+    std::optional<GainRows> gain_;  // of `map_`, once rows are read
+    std::array<float, 4096> light_of_code_{};
+    std::vector<float> light_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// JPEG files by libjpeg, row by row, as grey or RGB of 8 bits; what was made for ink comes as the light that it leaves.
+// JPEG files by libjpeg, row by row, as grey or RGB of 8 bits; what was made for ink comes as the light that it leaves,
+// and a picture with a gain map as light in floats.
 
 #include <memory>
 

@@ -179,7 +179,7 @@ class ImageFormats : public WithFolder {
             "|---|---|\n"
             "| OpenEXR | the parts of a frame ([names](conventions.md#names-that-are-recognised)); of tiles the "
             "largest level |\n"
-            "| JPEG | the first; a gain map (ISO 21496-1, Ultra HDR, Apple) is told and not applied |\n"
+            "| JPEG | the first, and a gain map (ISO 21496-1, Ultra HDR) as light; one of Apple's is told and not applied |\n"
             "| PNG | the picture, which may be an animation's first frame |\n"
             "| TIFF | the first page that is no smaller copy of another (`NewSubfileType`), or that a copy names "
             "(`SubIFDs`) |\n"
