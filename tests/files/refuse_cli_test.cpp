@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files that are well-formed and cannot be meant: one line that says where, what, and what is allowed.
+#include <fmt/format.h>
+
 #include <limits>
 #include <nlohmann/json.hpp>
 
