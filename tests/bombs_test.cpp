@@ -223,6 +223,29 @@ TEST_F(CliBombs, Scenes) {
     expect_refused_cheaply("long.toml", "4194305 bytes", usual);
 }
 
+// What is behind a surface, or where it is, is not shaded: such boxes took 48 s where they were.
+TEST_F(CliBombs, AThousandBoxesInOnePlaceAreShadedOnce) {
+    std::string boxes = "[camera]\nposition = [0, 1, 4]\n";
+    const auto draw = [&](const std::string& name) {
+        write(name + ".scene.toml", boxes);
+        return cost({"render", path(name + ".scene.toml"), "--size", "128x72", "-o", path(name + ".png")});
+    };
+    const auto add = [&](int i, const std::string& color) {
+        boxes += fmt::format(
+            "[entities.b{}]\nbounds = {{ min = [-1, -1, -1], max = [1, 1, 1] }}\nmaterial = {{ color = {} }}\n", i,
+            color);
+    };
+    add(1000, "[0.1, 0.2, 0.9]");
+    const Cost one = draw("one");
+    boxes.resize(boxes.find("[entities"));
+    for (int i = 0; i < 1000; ++i) add(i, "[0.9, 0.1, 0.1]");
+    add(1000, "[0.1, 0.2, 0.9]");
+    const Cost thousand = draw("thousand");
+    ASSERT_EQ(one.code + thousand.code, 0) << one.err << thousand.err;
+    EXPECT_LE(thousand.seconds, one.seconds + more_seconds);
+    EXPECT_EQ(content(path("one.png")), content(path("thousand.png"))) << "the last one is seen";
+}
+
 TEST_F(CliBombs, Pictures) {
     ASSERT_TRUE(write_picture(path("one.exr"), Picture(1, 1)));
     const Cost usual = this->usual("one.exr");

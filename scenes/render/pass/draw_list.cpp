@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <glm/gtc/type_ptr.hpp>
 #include <map>
+#include <optional>
+#include <set>
 #include <tuple>
 
 #include "render/upload/gpu_scene.hpp"
@@ -104,15 +107,51 @@ void sort_by_state(std::vector<Entry>& entries) {
     });
 }
 
-/// Within a batch the nearest first: what they hide costs no shading then.
+/// Within a batch the nearest first: what they hide costs no shading then. Of those in one place the last is seen.
 void sort_near_to_far(std::vector<Entry>& entries) {
     sort_by_state(entries);
     for (auto first = entries.begin(); first != entries.end();) {
         const auto last =
             std::find_if(first, entries.end(), [&](const Entry& e) { return e.state() != first->state(); });
-        std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
+        std::sort(first, last, [](const Entry& a, const Entry& b) {
+            return std::tie(a.distance, b.instance) < std::tie(b.distance, a.instance);
+        });
         first = last;
     }
+}
+
+/// Two of these in one place look alike, whatever is animated.
+using Place = std::array<float, 16 + 6>;
+
+std::optional<Place> place_of_opaque(const Snapshot& snapshot, const Entry& entry) {
+    const Instance& instance = snapshot.instances[entry.instance];
+    const bool is_moved = entry.is_skinned || instance.first_weight != scene::no_index;
+    if (is_moved || snapshot.materials[instance.material].surface.blend != SurfaceBlend::Opaque) return std::nullopt;
+    Place place{};
+    auto* next = std::copy_n(glm::value_ptr(instance.world), 16, place.begin());
+    next = std::copy_n(glm::value_ptr(instance.bounds.low), 3, next);
+    std::copy_n(glm::value_ptr(instance.bounds.high), 3, next);
+    return place;
+}
+
+/// Sorts them, and drops those in the very same place as a later one, which alone is seen, nor has another shadow.
+/// Tells how many were dropped.
+std::uint32_t arrange_opaque(std::vector<Entry>& sorted, const Snapshot& snapshot) {
+    sort_near_to_far(sorted);
+    std::set<Place> seen;
+    std::vector<Entry> kept;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        const Entry& entry = sorted[i];
+        const auto is_beside = [&](const Entry& other) {
+            return other.distance == entry.distance && other.state() == entry.state();
+        };
+        if (i == 0 || !is_beside(sorted[i - 1])) seen.clear();
+        const bool has_neighbours = !seen.empty() || (i + 1 < sorted.size() && is_beside(sorted[i + 1]));
+        const std::optional<Place> place = has_neighbours ? place_of_opaque(snapshot, entry) : std::nullopt;
+        if (!place || seen.insert(*place).second) kept.push_back(entry);
+    }
+    std::swap(sorted, kept);
+    return static_cast<std::uint32_t>(kept.size() - sorted.size());
 }
 
 }  // namespace
@@ -159,7 +198,7 @@ DrawList draw_list(const Snapshot& snapshot, const scene::mat4& clip_moved) {
             opaque.push_back(entry);
         }
     }
-    sort_near_to_far(opaque);
+    list.culled += arrange_opaque(opaque, snapshot);
     sort_by_state(wireframe);
     std::ranges::stable_sort(transparent, [](const Entry& a, const Entry& b) { return a.distance > b.distance; });
     append(list, list.opaque, opaque, snapshot);
@@ -189,7 +228,7 @@ DrawList caster_list(const Snapshot& snapshot, const scene::mat4& world_to_map, 
         }
         (is_transparent(snapshot, instance) ? transparent : opaque).push_back(make_entry(snapshot, i, surfaces));
     }
-    sort_by_state(opaque);
+    list.culled += arrange_opaque(opaque, snapshot);
     sort_by_state(transparent);
     append(list, list.opaque, opaque, snapshot);
     append(list, list.transparent, transparent, snapshot);

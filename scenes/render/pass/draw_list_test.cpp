@@ -99,13 +99,13 @@ TEST(RenderDrawList, BatchesPartWhereTexturesStateOrMeshDiffer) {
     snapshot.materials[mask_writer].writes = scene::Writes::Alpha;
     const std::uint32_t clamped = add_material(snapshot, SurfaceBlend::Opaque);
     snapshot.materials[clamped].surface.normal_texture.wrap_v = scene::Wrap::Clamp;
-    for (int repeat = 0; repeat < 2; ++repeat) {
+    for (const float x : {0.0F, 1.0F}) {
         for (std::uint32_t material = 0; material < snapshot.materials.size(); ++material)
-            add(snapshot, {0, 0, -5}, material);
-        add(snapshot, {0, 0, -5}, 0, {.model = 0, .mesh = 1});
-        add(snapshot, {0, 0, -5});
+            add(snapshot, {x, 0, -5}, material);
+        add(snapshot, {x, 0, -5}, 0, {.model = 0, .mesh = 1});
+        add(snapshot, {x, 0, -5});
         snapshot.instances.back().is_mirrored = true;
-        add(snapshot, {0, 0, -5}, 0, {.model = 0, .mesh = 1});
+        add(snapshot, {x, 0, -5}, 0, {.model = 0, .mesh = 1});
         snapshot.instances.back().first_joint = 7;
     }
     const DrawList list = draw_list(snapshot);
@@ -162,6 +162,21 @@ TEST(RenderDrawList, OpaqueOnesOfABatchGoFromFrontToBack) {
     EXPECT_EQ(draw_list(snapshot).order, (std::vector<std::uint32_t>{1, 3, 0, 2}));
 }
 
+TEST(RenderDrawList, OfOpaqueOnesInOnePlaceTheLastIsDrawnAlone) {
+    scene::Snapshot snapshot = empty_snapshot();
+    const std::uint32_t masked = add_material(snapshot, SurfaceBlend::Mask);
+    for (int i = 0; i < 3; ++i) {
+        add(snapshot, {0, 0, -5});
+        add(snapshot, {1, 0, -5});  // as far away
+    }
+    for (int i = 0; i < 2; ++i) add(snapshot, {0, 0, -5}, masked);  // holes need not be in one place
+    add(snapshot, {0, 0, -5});
+    snapshot.instances.back().first_weight = 0;
+    const DrawList list = draw_list(snapshot);
+    EXPECT_EQ(list.order, (std::vector<std::uint32_t>{8, 5, 4, 7, 6}));
+    EXPECT_EQ(list.culled, 4U);
+}
+
 TEST(RenderDrawList, WhatIsOutOfViewIsCountedAndNotDrawn) {
     scene::Snapshot snapshot = empty_snapshot();
     add(snapshot, {0, 0, -5});
@@ -204,12 +219,13 @@ TEST(RenderDrawList, CastersAreTransparentOnesTooAndNotThoseThatCastNone) {
 
 TEST(RenderDrawList, TheSameSnapshotGivesTheSameListWhateverTheOrderOfEqualOnes) {
     scene::Snapshot snapshot = empty_snapshot();
-    for (std::uint32_t i = 0; i < 64; ++i) add(snapshot, {0, 0, -5}, 0, {.model = 0, .mesh = i % 4});
+    for (std::uint32_t i = 0; i < 64; ++i)
+        add(snapshot, {0.01F * static_cast<float>(i), 0, -5}, 0, {.model = 0, .mesh = i % 4});
     const DrawList first = draw_list(snapshot), second = draw_list(snapshot);
     EXPECT_EQ(first.order, second.order);
     for (const Batch& batch : first.opaque) {
         for (std::uint32_t i = 1; i < batch.count; ++i)
-            EXPECT_LT(first.order[batch.first + i - 1], first.order[batch.first + i]);
+            EXPECT_GT(first.order[batch.first + i - 1], first.order[batch.first + i]) << "the last one stays";
     }
 }
 

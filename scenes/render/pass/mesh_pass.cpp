@@ -131,6 +131,8 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
     if (variant.writes_alpha_only) color = {.writes = VK_COLOR_COMPONENT_A_BIT};
     const bool is_laid_over = is_transparent || variant.writes_alpha_only;
     desc.writes_depth = !is_laid_over;
+    // A surface that lies where another does is not shaded again. What is cut out may lie on one, as a label does.
+    if (!is_laid_over && variant.blend == SurfaceBlend::Opaque) desc.depth_compare = VK_COMPARE_OP_GREATER;
     desc.colors =
         setup_.formats.colors(color, is_laid_over ? TargetFormats::Layers::Kept : TargetFormats::Layers::Written);
 }
