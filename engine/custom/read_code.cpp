@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <span>
@@ -39,6 +40,11 @@ constexpr std::array<std::string_view, 9> compute_words{
 constexpr std::size_t longest_value = 120;
 /// The compiler walks the tree of an expression by recursion: one of 7000 nested calls ends the process.
 constexpr std::size_t longest_statement = 2000;
+
+/// Compilers put a function's code wherever it is called, and take a minute for four times as many.
+constexpr std::size_t most_written_out = 65536;
+/// A buffer has no more numbers, and compilers take a minute for a million.
+constexpr std::size_t longest_array = 4096;
 
 /// Calls visit(token, the mark or word before, the one before that) for every token that is not blank.
 template <class Visit>
@@ -128,6 +134,126 @@ Result<> check_values(std::span<const Define> defines, std::size_t& line) {
     return {};
 }
 
+/// Functions as they are once those that they call are written out in them.
+class WrittenOut {
+  public:
+    explicit WrittenOut(std::string_view code) {
+        std::size_t depth = 0;
+        std::string_view name;
+        Body* body = nullptr;
+        for_each_token(code, [&](const Token& token, const Token& last, const Token&) {
+            const bool is_called = token.text == "(" && last.kind == Token::Kind::Word;
+            if (is_called && body == nullptr) name = last.text;
+            if (is_called && body != nullptr) body->calls.push_back(last.text);
+            if (token.text == "{" && depth++ == 0 && last.text == ")") body = &functions_[name].emplace_back();
+            if (token.text == "}" && depth > 0 && --depth == 0) body = nullptr;
+            if (body != nullptr) ++body->words;
+        });
+    }
+
+    /// The name of one that is longer than allowed; empty: none is.
+    std::string_view too_long() {
+        for (auto& [name, bodies] : functions_)
+            if (size_of(bodies) > most_written_out) return name;
+        return {};
+    }
+
+  private:
+    struct Body {
+        std::size_t words = 0;
+        std::vector<std::string_view> calls;
+        bool is_written_out = false;
+    };
+
+    // What calls itself is refused by GLSL; until then it counts once.
+    std::size_t size_of(std::vector<Body>& bodies) {
+        std::size_t most = 0;
+        for (Body& body : bodies) {
+            if (!std::exchange(body.is_written_out, true))
+                for (const std::string_view call : body.calls)
+                    if (const auto called = functions_.find(call); called != functions_.end())
+                        body.words = std::min(body.words + size_of(called->second), most_written_out + 1);
+            most = std::max(most, body.words);
+        }
+        return most;
+    }
+
+    std::map<std::string_view, std::vector<Body>> functions_;
+};
+
+/// The elements of arrays, those in structs counted through; a length that is no plain number is 1.
+class Arrays {
+  public:
+    explicit Arrays(std::string_view code) {
+        for_each_token(code, [&](const Token& token, const Token&, const Token&) { tokens_.push_back(token); });
+        std::string_view structure;
+        std::size_t elements = 0, of_type = 1;
+        while (at_ < tokens_.size()) {
+            const Token token = tokens_[at_++];
+            if (token.text == "struct" && text() != "{") {
+                structure = text();
+                elements = 0;
+            } else if (token.text == "}" && !structure.empty()) {
+                sizes_[structure] = elements;
+                structure = {};
+            } else if (token.kind == Token::Kind::Word) {
+                const auto known = sizes_.find(token.text);
+                const std::size_t own = (known == sizes_.end() ? 1 : known->second) * lengths();
+                if (at_ < tokens_.size() && tokens_[at_].kind == Token::Kind::Word) {
+                    of_type = own;
+                    ++at_;
+                    const std::size_t all = note(own * lengths());
+                    if (!structure.empty()) elements += all;
+                } else {
+                    note(own);
+                }
+            } else if (token.text == "," && !structure.empty()) {
+                ++at_;
+                elements += note(of_type * lengths());
+            }
+            elements = note(elements);
+        }
+    }
+    [[nodiscard]] std::size_t largest() const { return largest_; }
+
+  private:
+    [[nodiscard]] std::string_view text() const {
+        return at_ < tokens_.size() ? tokens_[at_].text : std::string_view();
+    }
+    /// Of what stands here, "[4][3]": 12, with a limit that products stay below.
+    std::size_t lengths() {
+        std::size_t product = 1;
+        while (text() == "[") {
+            const std::string number(at_ + 1 < tokens_.size() ? tokens_[at_ + 1].text : std::string_view());
+            const bool is_plain = at_ + 2 < tokens_.size() && tokens_[at_ + 2].text == "]";
+            if (!is_plain) break;
+            at_ += 3;
+            product = std::min(product * std::max<std::size_t>(std::strtoull(number.c_str(), nullptr, 0), 1), enough);
+        }
+        return product;
+    }
+    std::size_t note(std::size_t elements) {
+        largest_ = std::max(largest_, elements);
+        return std::min(elements, enough);
+    }
+
+    static constexpr std::size_t enough = std::size_t{1} << 20;
+    std::vector<Token> tokens_;
+    std::size_t at_ = 0, largest_ = 0;
+    std::map<std::string_view, std::size_t> sizes_;  // of structs
+};
+
+/// What takes compilers more than a minute: much code, once calls are written out, and large arrays.
+Result<> check_size(std::string_view code) {
+    if (const std::string_view name = WrittenOut(code).too_long(); !name.empty())
+        return user_error(
+            fmt::format("{}: a function of more than {} words and marks, those of all that it calls included", name,
+                        most_written_out));
+    if (Arrays(code).largest() > longest_array)
+        return user_error(fmt::format("an array of more than {} elements, those of structs included", longest_array));
+    return {};
+}
+
 }  // namespace
 
 Result<std::string> expand_code(std::string_view text, std::size_t& line) {
@@ -167,6 +293,8 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
         line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
     }
     DARKROOM_TRY(check_values(defines, line));
+    line = 1;  // of the whole file
+    DARKROOM_TRY(check_size(out));
     return out;
 }
 

@@ -184,6 +184,23 @@ TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
     for (int i = 0; i < 30; ++i) halves += " A";
     EXPECT_EQ(error_of_file("// @effect mine: Mine.\n" + halves + "; }\nmine("),
               "my.glsl:3: a statement of more than 2000 words and marks");
+    // A compiler writes it out 2^20 times; a name that stands before its function, too.
+    std::string calls = "float mine_0(float x) { return sin(x); }\n";
+    for (int i = 1; i <= 20; ++i)
+        calls = fmt::format(
+            "float mine_{0}(float x);\n{1}float mine_{2}(float x) {{ return mine_{0}(x) + mine_{0}(-x); }}\n", i - 1,
+            calls, i);
+    const auto whole_file_says = [](const std::string& code, const std::string& part) {
+        const std::string text = error_of_file("// @effect mine: Mine.\n" + code + "\nmine(");
+        EXPECT_TRUE(text.starts_with("my.glsl:1: ") && text.find(part) != std::string::npos) << code << " -> " << text;
+    };
+    whole_file_says(calls, ": a function of more than 65536 words and marks, those of all that it calls included");
+    const std::string array = "an array of more than 4096 elements, those of structs included";
+    whole_file_says("float mine_0(float x) { float a[4097]; return a[int(x)]; }", array);
+    whole_file_says("struct A { float x[64], y[2]; };\nstruct B { A a[32][2]; };\n", array);
+    whole_file_says("struct A { float x[64]; };\nA[65] all;\n", array);
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\nstruct A { float x[64]; };\nconst float w[4096] = all();\nmine("),
+              "");
     EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
               "my.glsl:3: #define B: its value names A, another one");
     EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");
