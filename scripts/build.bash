@@ -44,16 +44,15 @@ refuse_old_packages() {
     [[ -z $old ]] || die "too old here: $old"
 }
 
-# Tells how far apt is, which says so among its lines; the rest goes to the log. A line every 20 percent.
+# Tells how far apt is, of whose state these are the lines: every 20 percent.
 tell_apt() {
-    local line kind percent said=
-    while IFS= read -r line; do
-        case $line in
-            dlstatus:*) kind=downloading ;;
-            pmstatus:*) kind=unpacking ;;
-            *) printf '%s\n' "$line" >>"$log" && continue ;;
+    local kind percent said=
+    while IFS=: read -r kind _ percent _; do
+        case $kind in
+            dlstatus) kind=downloading ;;
+            pmstatus) kind=unpacking ;;
+            *) continue ;;
         esac
-        IFS=: read -r _ _ percent _ <<<"$line"
         percent=$((${percent%%.*} / 20 * 20))
         [[ $kind$percent == "$said" ]] || say "packages: $kind, $percent %"
         said=$kind$percent
@@ -90,12 +89,14 @@ install_packages() {
         return
     fi
     say "installing them"
-    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
-    "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
+    local as=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive) quiet=(-qq -o Dpkg::Use-Pty=0)
+    "${as[@]}" apt-get "${quiet[@]}" update >>"$log" 2>&1 ||
+        say "apt-get update failed; going on with the package lists that are there"
     refuse_old_packages
+    # How far apt is, it tells in a descriptor of its own, since packages print; sudo would close one that is opened here.
     # Word by word: $missing is a list.
-    "${apt[@]}" -o APT::Status-Fd=1 install -y --no-install-recommends $missing 2>&1 | tell_apt ||
-        failed "installing packages"
+    "${as[@]}" sh -c 'exec apt-get "$@" 3>&1 >&2' apt-get "${quiet[@]}" -o APT::Status-Fd=3 install -y \
+        --no-install-recommends $missing 2>>"$log" | tell_apt || failed "installing packages"
 }
 
 # What the caller has in DARKROOM_OPTIONAL_PACKAGES, as far as root can have it: what needs one of them is skipped without.

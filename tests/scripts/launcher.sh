@@ -43,7 +43,8 @@ STUB
 cat >"$work/bin/apt-get" <<'STUB'
 #!/usr/bin/env bash
 echo "apt-get $*" >>"$STUB_LOG"
-[[ $* != *Status-Fd=1* ]] || printf '%s\n' dlstatus:1:45.5:Retrieving dlstatus:2:59:Retrieving 'Get:1 libfmt-dev' pmstatus:libfmt-dev:61.1:Unpacking
+echo 'what a package prints'
+[[ $* != *Status-Fd=3* ]] || printf '%s\n' dlstatus:1:45.5:Retrieving dlstatus:2:59:Retrieving pmstatus:libfmt-dev:61.1:Unpacking >&3
 STUB
 cat >"$work/bin/sudo" <<'STUB'
 #!/usr/bin/env bash
