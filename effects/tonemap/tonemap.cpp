@@ -15,12 +15,13 @@ constexpr auto tonemap_rows = describe(
     field<&Tonemap::white>(
         "Luminance that reinhard_extended maps to white, and bt2390 to the peak; the other operators ignore it.",
         {0.1, 1024, Scale::Log}),
-    field<&Tonemap::peak_nits>("Peak luminance of the display, for bt2390 and bt2390_ictcp; there 1.0 is 203 cd/m2.",
-                               {100, 10000, Scale::Log}, unit::nits));
+    field<&Tonemap::peak_nits>(
+        "Peak luminance of the display, for bt2390, bt2390_ictcp and gt7; there 1.0 is 203 cd/m2.",
+        {100, 10000, Scale::Log}, unit::nits));
 
 ColorState makes(ColorState before, const void* parameters) {
     const Tonemap& values = *static_cast<const Tonemap*>(parameters);
-    const bool has_peak = values.curve == TonemapOperator::Bt2390 || values.curve == TonemapOperator::Bt2390Ictcp;
+    const bool has_peak = values.curve >= TonemapOperator::Bt2390;
     return {.domain = Domain::DisplayLinear,
             .white_nits = before.white_nits,
             .peak_nits = has_peak ? before.white_nits * values.peak_nits / 203 : before.white_nits};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // scene_linear -> display_linear in [0, 1]. Negative light and NaN count as 0, infinity as tonemap_ceiling. The curves of
-// BT.2390 end at the peak, and keep negative light: it is colour outside of Rec. 709, which wider primaries show.
+// BT.2390 and Gran Turismo 7 end at the peak, and keep negative light: it is colour outside of Rec. 709, which wider primaries show.
 
 #include "shared/color_state.glsl"
 #include "shared/sanitize.glsl"
@@ -84,27 +84,57 @@ vec3 tonemap_bt2390(vec3 light, float most, float peak) {
     return mapped == code ? light : light * (tonemap_from_pq(vec3(mapped)).x / largest);
 }
 
-// ICtCp of ITU-R BT.2100: chroma follows the intensity, so the hue stays.
+// ICtCp of ITU-R BT.2100, of light in Rec. 2020 by way of PQ.
+const mat3 tonemap_to_lms = mat3(1688.0, 683.0, 99.0, 2146.0, 2951.0, 309.0, 262.0, 462.0, 3688.0) / 4096.0;
+const mat3 tonemap_from_lms = mat3(3.436606694333079, -0.791329555598929, -0.025949899690593, -2.506452118656270,
+                                   1.983600451792291, -0.098913714711726, 0.069845424323191, -0.192270896193362,
+                                   1.124863614402319);
+const mat3 tonemap_to_ictcp = mat3(2048.0, 6610.0, 17933.0, 2048.0, -13613.0, -17390.0, 0.0, 7003.0, -543.0) / 4096.0;
+const mat3 tonemap_from_ictcp = mat3(1.0, 1.0, 1.0, 0.008609037037933, -0.008609037037933, 0.560031335710679,
+                                     0.111029625003026, -0.111029625003026, -0.320627174987319);
+
+// Chroma follows the intensity, so the hue stays.
 vec3 tonemap_bt2390_ictcp(vec3 light, float most, float peak) {
-    const mat3 to_lms = mat3(1688.0, 683.0, 99.0, 2146.0, 2951.0, 309.0, 262.0, 462.0, 3688.0) / 4096.0;
-    const mat3 from_lms = mat3(3.436606694333079, -0.791329555598929, -0.025949899690593, -2.506452118656270, 1.983600451792291,
-                               -0.098913714711726, 0.069845424323191, -0.192270896193362, 1.124863614402319);
-    const mat3 to_ictcp = mat3(2048.0, 6610.0, 17933.0, 2048.0, -13613.0, -17390.0, 0.0, 7003.0, -543.0) / 4096.0;
-    const mat3 from_ictcp = mat3(1.0, 1.0, 1.0, 0.008609037037933, -0.008609037037933, 0.560031335710679, 0.111029625003026,
-                                 -0.111029625003026, -0.320627174987319);
     light = min(light, 10000.0 / 203.0);
-    vec3 ictcp = to_ictcp * tonemap_pq(max(to_lms * (color_state_rec2020 * light), 0.0));
+    vec3 ictcp = tonemap_to_ictcp * tonemap_pq(max(tonemap_to_lms * (color_state_rec2020 * light), 0.0));
     float intensity = tonemap_eetf(ictcp.x, most, peak);
     if (intensity == ictcp.x) return light;
     float ratio = intensity / ictcp.x;
-    vec3 lms = from_ictcp * vec3(intensity, ictcp.yz * min(ratio, 1.0 / ratio));
-    return color_state_from_rec2020 * (from_lms * tonemap_from_pq(lms));
+    vec3 lms = tonemap_from_ictcp * vec3(intensity, ictcp.yz * min(ratio, 1.0 / ratio));
+    return color_state_from_rec2020 * (tonemap_from_lms * tonemap_from_pq(lms));
+}
+
+// H. Uchimura and K. Suzuki (Polyphony Digital), "Driving Toward Reality: Physically Based Tone Mapping and Perceptual
+// Fidelity in Gran Turismo 7", SIGGRAPH 2025. Its paper white of 250 cd/m2 is 1.0 here, so that standard range is the
+// high range of a display whose peak is white. A toe, a straight line from `middle` on, and above `straight` of the peak a
+// shoulder.
+vec3 tonemap_gt7_curve(vec3 x, float peak) {
+    const float middle = 0.538 / 2.5, straight = 0.444, k = (straight - 1.0) / (0.25 - 1.0);
+    vec3 low = mix(middle * pow(x / middle, vec3(1.28)), x, smoothstep(0.0, middle, x));
+    vec3 shoulder = peak * (straight + k - k * exp((straight - x / peak) / k));
+    return mix(low, shoulder, greaterThanEqual(x, vec3(straight * peak)));
+}
+vec3 tonemap_gt7_ictcp(vec3 wide) {
+    return tonemap_to_ictcp * pq_encode(max(tonemap_to_lms * wide, 0.0) * (250.0 / 10000.0));
+}
+
+// A mean of the curve on each channel, which skews hues as film does, and of its intensity with the hue of the light, whose
+// chroma fades towards the peak.
+vec3 tonemap_gt7(vec3 light, float peak) {
+    vec3 wide = color_state_rec2020 * clamp(light, -tonemap_ceiling, tonemap_ceiling);
+    vec3 skewed = tonemap_gt7_curve(max(wide, 0.0), peak), ictcp = tonemap_gt7_ictcp(wide);
+    float fade = 1.0 - smoothstep(0.98, 1.16, ictcp.x / tonemap_gt7_ictcp(vec3(peak)).x);
+    vec3 lms = pq_decode(tonemap_from_ictcp * vec3(tonemap_gt7_ictcp(skewed).x, ictcp.yz * fade)) * (10000.0 / 250.0);
+    vec3 kept = max(tonemap_from_lms * lms, 0.0);
+    return color_state_from_rec2020 * min(mix(skewed, kept, 0.6), peak);
 }
 
 vec3 tonemap_to_peak(vec3 color, Tonemap parameters) {
     vec3 light = sanitize(vec4(color, 1.0)).rgb;
     float peak = parameters.peak_nits / 203.0;
     vec3 codes = tonemap_pq(vec3(parameters.white, peak, 0.0));
+    // Ends at the peak in Rec. 2020.
+    if (parameters.curve == Tonemap_curve_gt7) return tonemap_gt7(light, peak);
     light = parameters.curve == Tonemap_curve_bt2390 ? tonemap_bt2390(light, codes.x, codes.y)
                                                      : tonemap_bt2390_ictcp(light, codes.x, codes.y);
     return clamp(light, -peak, peak);
@@ -128,6 +158,6 @@ vec4 tonemap(vec4 color, Pixel pixel, Tonemap parameters) {
         light = tonemap_pbr_neutral(light);
     }
     light = clamp(light, 0.0, 1.0);
-    if (curve == Tonemap_curve_bt2390 || curve == Tonemap_curve_bt2390_ictcp) light = tonemap_to_peak(color.rgb, parameters);
+    if (curve >= Tonemap_curve_bt2390) light = tonemap_to_peak(color.rgb, parameters);
     return vec4(light, color.a);
 }

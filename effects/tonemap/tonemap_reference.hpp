@@ -117,11 +117,12 @@ inline Color bt2390(const Color& light, double most, double peak) {
     return each(light, [=](double v) { return v * gain; });
 }
 
+constexpr double n = 4096;
+inline const Rows to_lms{{{1688 / n, 2146 / n, 262 / n}, {683 / n, 2951 / n, 462 / n}, {99 / n, 309 / n, 3688 / n}}};
+inline const Rows to_ictcp{{{0.5, 0.5, 0}, {6610 / n, -13613 / n, 7003 / n}, {17933 / n, -17390 / n, -543 / n}}};
+
 /// The same on the intensity of ICtCp (ITU-R BT.2100), to which the chroma is scaled.
 inline Color bt2390_ictcp(const Color& light, double most, double peak) {
-    constexpr double n = 4096;
-    const Rows to_lms{{{1688 / n, 2146 / n, 262 / n}, {683 / n, 2951 / n, 462 / n}, {99 / n, 309 / n, 3688 / n}}};
-    const Rows to_ictcp{{{0.5, 0.5, 0}, {6610 / n, -13613 / n, 7003 / n}, {17933 / n, -17390 / n, -543 / n}}};
     using color_state_detail::solved;
     const Color capped = each(light, [](double v) { return std::min(v, 10000.0 / 203); });
     const Color lms = multiply(to_lms, multiply(color_state_detail::rec2020, capped));
@@ -133,10 +134,45 @@ inline Color bt2390_ictcp(const Color& light, double most, double peak) {
     return solved(color_state_detail::rec2020, solved(to_lms, each(solved(to_ictcp, ictcp), light_of)));
 }
 
+/// H. Uchimura and K. Suzuki (Polyphony Digital), "Driving Toward Reality: Physically Based Tone Mapping and Perceptual
+/// Fidelity in Gran Turismo 7", SIGGRAPH 2025, in its unit, which is 100 cd/m2; white is 250 cd/m2.
+inline double gt7_curve(double x, double peak) {
+    const double alpha = 0.25, middle = 0.538, straight = 0.444, toe_strength = 1.28;
+    const double k = (straight - 1) / (alpha - 1);
+    if (x < 0) return 0;
+    if (x >= straight * peak)
+        return peak * (straight + k) - peak * k * std::exp(straight / k) * std::exp(-x / (k * peak));
+    const double t = std::min(x / middle, 1.0), weight = t * t * (3 - 2 * t);
+    return (1 - weight) * middle * std::pow(x / middle, toe_strength) + weight * x;
+}
+
+inline Color gt7(const Color& light, double peak_of_white) {
+    using color_state_detail::solved;
+    const double peak = 2.5 * peak_of_white;
+    const auto ictcp_of = [](const Color& rgb) {
+        return multiply(to_ictcp,
+                        each(multiply(to_lms, rgb), [](double v) { return pq_encoded(std::max(v, 0.0) / 100); }));
+    };
+    const Color rgb = each(multiply(color_state_detail::rec2020, light), [](double v) { return 2.5 * v; });
+    const Color skewed = each(rgb, [=](double v) { return gt7_curve(v, peak); });
+    const Color ictcp = ictcp_of(rgb);
+    const double t = std::clamp((ictcp[0] / ictcp_of({peak, peak, peak})[0] - 0.98) / (1.16 - 0.98), 0.0, 1.0);
+    const double fade = 1 - t * t * (3 - 2 * t);
+    const Color lms = each(solved(to_ictcp, {ictcp_of(skewed)[0], ictcp[1] * fade, ictcp[2] * fade}),
+                           [](double v) { return 100 * pq_decoded(std::clamp(v, 0.0, 1.0)); });
+    const Color kept = solved(to_lms, lms);
+    Color out{};
+    for (std::size_t i = 0; i < 3; ++i) out[i] = std::min(0.4 * skewed[i] + 0.6 * std::max(kept[i], 0.0), peak) / 2.5;
+    return solved(color_state_detail::rec2020, out);
+}
+
 /// Negative light stays: it is colour outside of Rec. 709.
 inline Color to_peak(const Color& color, const Tonemap& parameters) {
     const double most = parameters.white, peak = double{parameters.peak_nits} / 203;
     const Color light = each(color, finite_reference);
+    // Ends at the peak in Rec. 2020.
+    if (parameters.curve == TonemapOperator::Gt7)
+        return gt7(each(light, [](double v) { return std::clamp(v, -1e6, 1e6); }), peak);
     const Color out =
         parameters.curve == TonemapOperator::Bt2390 ? bt2390(light, most, peak) : bt2390_ictcp(light, most, peak);
     return each(out, [=](double v) { return std::clamp(v, -peak, peak); });
@@ -171,6 +207,7 @@ inline Rgba tonemap_reference(Rgba color, const ReferencePixel&, const Tonemap& 
             break;
         case TonemapOperator::Bt2390:
         case TonemapOperator::Bt2390Ictcp:
+        case TonemapOperator::Gt7:
             light = to_peak({color.r, color.g, color.b}, parameters);
             return {light[0], light[1], light[2], color.a};
     }

@@ -76,6 +76,15 @@ TEST_F(CliFlags, AFlagIsNoValueOfTheOneBefore) {
                    "darkroom: --bloom-intensity: one value is needed, before '--output'\n");
     expect_refused({"develop", "a.exr", "-o", "a.png", "--size", "--exposure=2"}, 1,
                    "darkroom: --size: one value is needed, before '--exposure=2'\n");
+    expect_refused({"develop", "a.exr", "--look", "-o", "a.png"}, 1,
+                   "darkroom: --look: one value is needed, before '-o'\n");
+    expect_refused({"render", "a.toml", "--frames", "-o", "a.png"}, 1,
+                   "darkroom: --frames: one value is needed, before '-o'\n");
+    for (const auto& [flag, value, meant] : {std::array{"--vignette", "0.5", "--vignette-intensity 0.5"},
+                                             {"--tonemap", "agx", "--tonemap-curve agx"},
+                                             {"--bloom", "0.2", "--bloom-intensity 0.2"}})
+        expect_refused({"develop", "a.exr", flag, value, "-o", "a.png"}, 1,
+                       fmt::format("darkroom: {}: takes no value, did you mean '{}'?\n", flag, meant));
     expect_refused({"develop", "a.exr"}, 1, "darkroom: develop: -o OUT is needed: The picture: ");
     expect_refused({"develop"}, 1, "darkroom: develop: INPUT is needed: Frames or pictures");
     expect_refused({"develop", "a.exr", "--exposre", "2"}, 1, "did you mean '--exposure'?\n");

@@ -17,7 +17,8 @@ folder=$work/host
 [[ -z $darkroom ]] || folder=$build/fetched
 mkdir -p "$folder"
 awk '/^```/ { if (block ~ /FetchContent_Declare/) printf "%s", block; block = ""; next } { block = block $0 "\n" }' \
-    "$tree/docs/embedding.md" | sed "s|\${CMAKE_SOURCE_DIR}/external/darkroom|$tree|; s/\bengine\b/plain/" >"$folder/fetch.cmake"
+    "$tree/docs/embedding.md" | grep -vE '^(cmake_minimum_required|project|find_package|add_executable)' |
+    sed "s|\${CMAKE_SOURCE_DIR}/external/darkroom|$tree|; s/\bengine\b/plain/" >"$folder/fetch.cmake"
 grep -q "SOURCE_DIR $tree)" "$folder/fetch.cmake" || fail "docs/embedding.md does not say how the tree is fetched"
 # configure OPTION...
 configure() {

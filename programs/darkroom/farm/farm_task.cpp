@@ -64,6 +64,8 @@ class Task {
 
     Result<int> run() {
         DARKROOM_TRY(begin());
+        if (is_done())
+            tell(fmt::format("{} of {} pictures are there already", record_.done.size(), record_.frames.size()));
         while (!is_done() && record_.tries < max_tries) {
             if (record_.tries > 0) std::this_thread::sleep_for(pause);
             ++record_.tries;

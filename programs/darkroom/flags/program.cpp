@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <string>
@@ -112,6 +113,24 @@ std::string flag_for_value(const CLI::App& command) {
     return {};
 }
 
+// "--vignette 0.5": a switch takes no value, and what stands behind it was taken for a file. Empty: nothing of the
+// kind.
+std::string value_of_switch(const CLI::App& command, std::span<char* const> arguments) {
+    std::error_code error;
+    for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
+        const std::string flag = arguments[i], value = arguments[i + 1];
+        const CLI::Option* const option = flag.starts_with("--") ? command.get_option_no_throw(flag) : nullptr;
+        if (option == nullptr || option->get_expected_max() != 0 || value.starts_with('-')) continue;
+        if (value.find_first_of("*?#%") != std::string::npos || std::filesystem::exists(value, error)) continue;
+        const std::vector<std::string> known = known_names(command);
+        for (const std::string_view amount : {"-intensity", "-amount", "-strength", "-curve", ""})
+            for (const std::string& name : known)
+                if (amount.empty() ? name.starts_with(flag + "-") : name == flag + std::string(amount))
+                    return fmt::format("{}: takes no value, did you mean '{} {}'?", flag, name, printable(value));
+    }
+    return {};
+}
+
 std::string missing(const CLI::App& program) {
     if (const auto typed = program.get_subcommands(); !typed.empty()) return missing(*typed.front());
     if (program.get_require_subcommand_min() > 0)
@@ -160,7 +179,9 @@ Result<std::optional<int>> Program::parse(std::span<char* const> arguments) cons
     } catch (const CLI::Success& done) {  // --version
         return std::optional<int>(parser_->exit(done));
     } catch (const CLI::ExtrasError&) {
-        return user_error(unknown_argument(*parser_));
+        const CLI::App* const command = command_with_rest(*parser_);
+        std::string text = command == nullptr ? std::string() : flag_for_value(*command);
+        return user_error(text.empty() ? unknown_argument(*parser_) : std::move(text));
     } catch (const CLI::ArgumentMismatch& error) {
         return mismatch(error.what());
     } catch (const CLI::ConversionError& error) {  // "Could not convert: --strict = maybe": of switches alone
@@ -230,6 +251,8 @@ int run(int argc, char** argv, const AddCommands& add_commands) {
     if (*answered) return **answered;
     const auto chosen = std::ranges::find_if(commands, is_asked, &Command::flags);
     if (const darkroom::Result<> done = check_values(chosen->flags); !done) return fail(done.error());
+    if (std::string text = value_of_switch(chosen->flags.parser(), arguments); !text.empty())
+        return fail(user_error(std::move(text)).value());
     return chosen->run();
 }
 

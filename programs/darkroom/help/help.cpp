@@ -74,8 +74,11 @@ bool FlagText::takes_file() const {
 }
 
 std::string FlagText::shown() const {
+    // The sentence of a choice lists them, too.
+    constexpr std::size_t longest = 90;
+    const std::string taken = value.empty() ? "" : choices.empty() || value.size() <= longest ? " " + value : " NAME";
     std::string out;
-    for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name + (value.empty() ? "" : " " + value);
+    for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name + taken;
     return out;
 }
 
