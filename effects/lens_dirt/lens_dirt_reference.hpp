@@ -23,10 +23,11 @@ inline constexpr std::uint32_t lens_dirt_width = 512, lens_dirt_height = 288;
 
 /// The dust that there is without a picture.
 [[nodiscard]] const std::vector<LensDirtDisc>& lens_dirt_discs();
-/// Of a disc at a distance from its middle: brighter toward its rim, as what is out of focus, with a soft edge.
+/// Of a disc at a distance from its middle: brighter toward its rim, as what is out of focus, with a soft edge, which
+/// takes a texel and a half at least, so that small discs are round.
 inline double lens_dirt_profile(const LensDirtDisc& disc, double distance) {
-    const double t = distance / disc.radius;
-    return disc.brightness * (0.6 + 0.4 * std::pow(std::min(t, 1.0), 4)) * std::clamp((1 - t) / 0.15, 0.0, 1.0);
+    const double t = distance / disc.radius, edge = std::max(0.15, 1.5 / (disc.radius * lens_dirt_height));
+    return disc.brightness * (0.6 + 0.4 * std::pow(std::min(t, 1.0), 4)) * std::clamp((1 - t) / edge, 0.0, 1.0);
 }
 
 /// RGBA of 8 bits, row-major: of a picture, or of the discs, the brightest of which counts.

@@ -57,6 +57,18 @@ TEST(EffectLensDirt, DirtThatIsWhiteAddsTheLightAround) {
     EXPECT_NEAR(across / all / (deviation * deviation - 256.0 / 12), 1, 0.04);
 }
 
+// Dust whose edge lay within a texel was of squares.
+TEST(EffectLensDirt, DustHasNoEdgesOfTexels) {
+    const LensDirtTable table = lens_dirt_table(nullptr);
+    const auto at = [&](std::uint32_t x, std::uint32_t y) {
+        return static_cast<int>(table.rgba[(std::size_t{y} * table.width + x) * 4]);
+    };
+    for (std::uint32_t y = 0; y + 1 < table.height; ++y)
+        for (std::uint32_t x = 0; x + 1 < table.width; ++x)
+            for (const int beside : {at(x + 1, y), at(x, y + 1)})
+                EXPECT_TRUE(std::min(at(x, y), beside) > 0 || std::max(at(x, y), beside) < 120) << x << ", " << y;
+}
+
 TEST(EffectLensDirt, EveryTexelIsItsBrightestDisc) {
     const LensDirtTable table = lens_dirt_table(nullptr);
     ASSERT_EQ(table.rgba.size(), std::size_t{lens_dirt_width} * lens_dirt_height * 4);
