@@ -31,6 +31,15 @@ void bright_constants(const void* parameters, const PassContext&, std::span<Pass
     out[0] = {flare_of(parameters).threshold, 0, 0, 0};
 }
 
+void aperture_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const double aspect = static_cast<double>(context.frame_extent.width) / context.frame_extent.height;
+    for (std::size_t i = 0; i < lens_flare_places; ++i) {
+        const auto [right, down] = lens_flare_place(flare_of(parameters), i);
+        out[i / 2][i % 2 * 2] = static_cast<float>(right / aspect);
+        out[i / 2][i % 2 * 2 + 1] = static_cast<float>(down);
+    }
+}
+
 void part_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const LensFlare& flare = flare_of(parameters);
     out[0] = {static_cast<float>(context.frame_extent.width) / static_cast<float>(context.frame_extent.height),
@@ -47,10 +56,13 @@ void part_constants(const void* parameters, const PassContext& context, std::spa
 void build(PassBuilder& builder) {
     const std::uint32_t part = builder.from_max_extent(bright_part);
     const PassImage bright = add_bright_light(builder, builder.source(), part, bright_constants);
-    const PassImage light = builder.add({.name = "blur",
-                                         .shader = "lens_flare.glsl#blur",
-                                         .inputs = {{.name = "lens_flare_light", .image = bright}},
-                                         .output = builder.create({.name = "light", .denominator = part})});
+    const PassImage light =
+        builder.add({.name = "aperture",
+                     .shader = "lens_flare.glsl#aperture",
+                     .inputs = {{.name = "lens_flare_bright", .image = add_quarter_light(builder, bright, 2 * part)}},
+                     .output = builder.create({.name = "light", .denominator = 2 * part}),
+                     .custom_vectors = lens_flare_places / 2,
+                     .constants = aperture_constants});
     const PassImage flare = builder.add({.name = "parts",
                                          .shader = "lens_flare.glsl#parts",
                                          .inputs = {{.name = "lens_flare_light", .image = light}},

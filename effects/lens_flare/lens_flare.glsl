@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-#part blur
-// A tent of three texels each way, (1 2 1) / 4, by four bilinear taps: ghosts have no edges of texels.
+#part aperture
+// Ghosts are out of focus: each light as the aperture shows it, so that neither windows nor texels have edges in them.
+// custom[i] = two places each, in parts of the picture, which count as much as the middle does.
 
 vec4 shade(Pixel pixel) {
-    vec2 reach = 0.5 / vec2(size(lens_flare_light));
-    return 0.25 * (sample_linear(lens_flare_light, pixel.uv - reach) +
-                   sample_linear(lens_flare_light, pixel.uv + vec2(reach.x, -reach.y)) +
-                   sample_linear(lens_flare_light, pixel.uv + vec2(-reach.x, reach.y)) +
-                   sample_linear(lens_flare_light, pixel.uv + reach));
+    const int vectors = 40;
+    vec3 sum = sample_linear(lens_flare_bright, pixel.uv).rgb;
+    for (int i = 0; i < vectors; ++i)
+        sum += sample_linear(lens_flare_bright, pixel.uv + custom[i].xy).rgb +
+               sample_linear(lens_flare_bright, pixel.uv + custom[i].zw).rgb;
+    return vec4(sum / float(2 * vectors + 1), 1.0);
 }
 
 #part parts
-// Ghosts and halo: John Chapman, "Pseudo Lens Flare", 2013, and "Screen Space Lens Flare", 2017. custom[0] = (width / height,
-// ghosts, rays, how far red and blue are apart), custom[1] = (radius and strength of the halo, starburst),
+// Ghosts and halo: John Chapman, "Pseudo Lens Flare", 2013, and "Screen Space Lens Flare", 2017. custom[0] = (width /
+// height, ghosts, rays, how far red and blue are apart), custom[1] = (radius and strength of the halo, starburst),
 // custom[2 + i] = (what the place is multiplied by for ghost i, its colour).
 
 // The light at a place, in heights and widths of the picture from its middle; none outside, to which it fades.

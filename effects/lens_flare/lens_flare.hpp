@@ -20,7 +20,7 @@ struct LensFlare {
     /// Step by which each ghost is smaller and nearer to the centre than the one before. [0, 2]
     float spacing = 0.35f;
     /// Strength of the halo relative to a ghost. [0, 4]
-    float halo = 0.5f;
+    float halo = 0.2f;
     /// Radius of the halo of a light in the centre, in heights of the picture. [0, 1]
     float halo_radius = 0.4f;
     /// Share by which ghosts are larger in red and smaller in blue. [0, 0.2]

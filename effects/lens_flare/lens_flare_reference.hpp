@@ -32,8 +32,50 @@ inline std::int32_t lens_flare_rays(const LensFlare& flare) {
     return flare.blades % 2 == 0 ? flare.blades : 2 * flare.blades;
 }
 
-inline ReferenceImage lens_flare_parts_reference(const LensFlare& flare, const ReferenceImage& light, double aspect) {
-    ReferenceImage out(light.width, light.height, {0, 0, 0, 1});
+/// Ghosts are out of focus, so each light is seen as the aperture: its radius at the corners, in heights of the
+/// picture.
+inline constexpr double lens_flare_aperture_radius = 0.06;
+/// Of which these are the places that count alike, beside the middle: rings, 8 more on each than on the one inside.
+inline constexpr std::size_t lens_flare_rings = 4, lens_flare_places = 4 * lens_flare_rings * (lens_flare_rings + 1);
+
+/// In heights of the picture, from the middle: along a polygon of as many sides as the aperture has blades, which
+/// stands for all within half a step of it.
+inline std::array<double, 2> lens_flare_place(const LensFlare& flare, std::size_t number) {
+    std::size_t ring = 1;
+    for (; number >= 8 * ring; ++ring) number -= 8 * ring;
+    const double way = static_cast<double>(number) / static_cast<double>(8 * ring) * flare.blades;
+    const double corner = std::floor(way), part = way - corner, turn = 2 * std::numbers::pi / flare.blades;
+    const double far =
+        lens_flare_aperture_radius * static_cast<double>(ring) / (static_cast<double>(lens_flare_rings) + 0.5);
+    return {far * (std::cos(turn * corner) * (1 - part) + std::cos(turn * (corner + 1)) * part),
+            far * (std::sin(turn * corner) * (1 - part) + std::sin(turn * (corner + 1)) * part)};
+}
+
+/// The light above the threshold in half of the small picture, each seen as the aperture.
+inline ReferenceImage lens_flare_light_reference(const LensFlare& flare, const ReferenceImage& source) {
+    const std::uint32_t part = bright_part({source.width, source.height});
+    const ReferenceImage half = quarter_light_reference(bright_reference(source, double{flare.threshold}),
+                                                        source.width / (2 * part), source.height / (2 * part));
+    ReferenceImage light(half.width, half.height, {0, 0, 0, 1});
+    const double aspect = static_cast<double>(source.width) / source.height;
+    for (std::uint32_t y = 0; y < light.height; ++y)
+        for (std::uint32_t x = 0; x < light.width; ++x) {
+            const double u = (x + 0.5) / light.width, v = (y + 0.5) / light.height,
+                         share = 1.0 / (lens_flare_places + 1);
+            Rgba sum = weighed_sum_reference({0, 0, 0, 1}, half.at(x, y), share);
+            for (std::size_t i = 0; i < lens_flare_places; ++i) {
+                const auto [right, down] = lens_flare_place(flare, i);
+                sum = weighed_sum_reference(sum, sample_reference(half, u + right / aspect, v + down), share);
+            }
+            light.at(x, y) = sum;
+        }
+    return light;
+}
+
+/// In a picture of `extent` pixels.
+inline ReferenceImage lens_flare_parts_reference(const LensFlare& flare, const ReferenceImage& light, double aspect,
+                                                 VkExtent2D extent) {
+    ReferenceImage out(std::max(extent.width, 1u), std::max(extent.height, 1u), {0, 0, 0, 1});
     const double apart = double{flare.dispersion};
     const auto inside = [](double x, double y) {
         return std::clamp((0.5 - std::abs(x)) * 8, 0.0, 1.0) * std::clamp((0.5 - std::abs(y)) * 8, 0.0, 1.0);
@@ -69,16 +111,10 @@ inline ReferenceImage lens_flare_parts_reference(const LensFlare& flare, const R
 inline ReferenceImage lens_flare_reference(const void* parameters, const ReferenceInput& input) {
     const LensFlare& flare = *static_cast<const LensFlare*>(parameters);
     ReferenceImage out = *input.picture;
-    const ReferenceImage bright = bright_reference(*input.source, double{flare.threshold});
-    ReferenceImage light(bright.width, bright.height, {0, 0, 0, 1});
-    for (std::uint32_t y = 0; y < light.height; ++y)
-        for (std::uint32_t x = 0; x < light.width; ++x)
-            for (std::int64_t dy = -1; dy <= 1; ++dy)
-                for (std::int64_t dx = -1; dx <= 1; ++dx)
-                    light.at(x, y) = weighed_sum_reference(
-                        light.at(x, y), bright.clamped(x + dx, y + dy),
-                        (2.0 - std::abs(static_cast<double>(dx))) / 4 * (2.0 - std::abs(static_cast<double>(dy))) / 4);
-    const ReferenceImage parts = lens_flare_parts_reference(flare, light, static_cast<double>(out.width) / out.height);
+    const ReferenceImage light = lens_flare_light_reference(flare, *input.source);
+    const std::uint32_t part = bright_part({out.width, out.height});
+    const ReferenceImage parts = lens_flare_parts_reference(flare, light, static_cast<double>(out.width) / out.height,
+                                                            {out.width / part, out.height / part});
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x)
             out.at(x, y) = weighed_sum_reference(out.at(x, y),

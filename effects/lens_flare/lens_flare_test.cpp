@@ -40,10 +40,15 @@ double green_at(const ReferenceImage& picture, double x, double y) {
     return sample_reference(picture, x + 0.5, y + 0.5).g;
 }
 
+/// Of a light, as large as its picture.
+ReferenceImage parts_of(const LensFlare& flare, const ReferenceImage& light, double aspect) {
+    return lens_flare_parts_reference(flare, light, aspect, {light.width, light.height});
+}
+
 TEST(EffectLensFlare, GhostsLieWhereTheFormulaSays) {
     const LensFlare flare{.ghosts = 5, .spacing = 0.25f, .halo = 0, .dispersion = 0, .starburst = 0};
     const double x = 0.28, y = -0.19;
-    const ReferenceImage parts = lens_flare_parts_reference(flare, spot_at(x, y), 16.0 / 9);
+    const ReferenceImage parts = parts_of(flare, spot_at(x, y), 16.0 / 9);
     const double scales[] = {-1, 1.25, -1.5, 1.75, -2};
     for (std::int32_t ghost = 0; ghost < 5; ++ghost) {
         const double scale = scales[ghost];
@@ -62,10 +67,34 @@ TEST(EffectLensFlare, GhostsLieWhereTheFormulaSays) {
 
 TEST(EffectLensFlare, TheFirstGhostIsTheLightTurned) {
     const LensFlare flare{.ghosts = 1, .halo = 0, .dispersion = 0, .starburst = 0};
-    const ReferenceImage light = spot_at(0.2, 0.1), parts = lens_flare_parts_reference(flare, light, 16.0 / 9);
+    const ReferenceImage light = spot_at(0.2, 0.1), parts = parts_of(flare, light, 16.0 / 9);
     for (std::uint32_t y = 0; y < light.height; ++y)
         for (std::uint32_t x = 0; x < light.width; ++x)
             EXPECT_NEAR(parts.at(x, y).r, light.at(light.width - 1 - x, light.height - 1 - y).r, 1e-9);
+}
+
+// The mean square of the distances from the middle of a regular polygon is R^2 (2 + cos(2 pi / n)) / 6.
+TEST(EffectLensFlare, AGhostOfALampIsTheAperture) {
+    for (const std::int32_t blades : {3, 6, 16}) {
+        const LensFlare flare{
+            .intensity = 1, .ghosts = 1, .halo = 0, .dispersion = 0, .blades = blades, .starburst = 0};
+        ReferenceImage picture(640, 1080, {0, 0, 0, 1});
+        for (std::uint32_t y = 504; y < 512; ++y)
+            for (std::uint32_t x = 304; x < 312; ++x) picture.at(x, y) = {1001, 1001, 1001, 1};
+        const ReferenceImage out = test::reference_of(flare, picture);
+        double all = 0, square = 0;
+        for (std::uint32_t y = 0; y < out.height; ++y)
+            for (std::uint32_t x = 0; x < out.width; ++x) {
+                const double added = out.at(x, y).g - picture.at(x, y).g;
+                all += added, square += added * (std::pow(x + 0.5 - 332, 2) + std::pow(y + 0.5 - 572, 2));
+            }
+        const double radius = 0.06 * 1080;
+        // The lamp's own size and the taps between texels of 8 and of 4 pixels add some 60 to it.
+        EXPECT_NEAR(square / all - 60, radius * radius * (2 + std::cos(2 * std::numbers::pi / blades)) / 6,
+                    0.03 * radius * radius)
+            << blades;
+        EXPECT_NEAR(all / (64 * 1000), 1, 0.02) << blades;
+    }
 }
 
 TEST(EffectLensFlare, ColorsOfGhostsAddUpToWhite) {
@@ -97,12 +126,12 @@ TEST(EffectLensFlare, TheHaloIsARoundRing) {
     const ReferenceImage light = spot_at(0, 0, 193, 109);
     const double aspect = 193.0 / 109;
     const LensFlare flare{.ghosts = 0, .halo = 1, .halo_radius = 0.35f, .dispersion = 0, .starburst = 0};
-    const ReferenceImage parts = lens_flare_parts_reference(flare, light, aspect);
+    const ReferenceImage parts = parts_of(flare, light, aspect);
     for (int i = 0; i < 24; ++i)
         EXPECT_NEAR(middle_at(parts, i * std::numbers::pi / 12, aspect, &Rgba::g), 0.35, 0.5 / 109) << i;
     LensFlare apart = flare;
     apart.dispersion = 0.2f;
-    const ReferenceImage colored = lens_flare_parts_reference(apart, light, aspect);
+    const ReferenceImage colored = parts_of(apart, light, aspect);
     EXPECT_NEAR(middle_at(colored, 0.3, aspect, &Rgba::r), 0.35 * 1.2, 0.5 / 109);
     EXPECT_NEAR(middle_at(colored, 0.3, aspect, &Rgba::b), 0.35 * 0.8, 0.5 / 109);
 }
@@ -111,7 +140,7 @@ TEST(EffectLensFlare, EvenBladesHaveAsManyRaysAndOddOnesTwice) {
     const ReferenceImage light = test::uniform(193, 109, {1, 1, 1, 1});
     for (const auto& [blades, rays] : {std::pair{3, 6}, {4, 4}, {5, 10}, {6, 6}, {9, 18}}) {
         const LensFlare flare{.ghosts = 1, .halo = 0, .dispersion = 0, .blades = blades, .starburst = 1};
-        const ReferenceImage parts = lens_flare_parts_reference(flare, light, 193.0 / 109);
+        const ReferenceImage parts = parts_of(flare, light, 193.0 / 109);
         constexpr int steps = 720;
         const auto at = [&](int i) {
             const double angle = 2 * std::numbers::pi * i / steps;
