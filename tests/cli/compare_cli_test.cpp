@@ -210,6 +210,11 @@ TEST_F(CliCompare, NumbersOfObjectsAreComparedInAllTheirBits) {
         EXPECT_EQ(told.out, "differing pixels 2 of 384\nworst pixel      7,3  ids: 4294967294 and 16777217\n");
         const json layers = report("m.exr", "n.exr", {"--layers", "all"}).at("layers");
         ASSERT_EQ(layers.size(), 4u) << "of the object its weight and its number";
+        for (const json& layer : json::parse(run({"info", path("n.exr"), "--json"}).out).at("layers")) {
+            if (layer.at("layer") != "ids") continue;
+            EXPECT_EQ((json{layer.at("min"), layer.at("max")}), (json{16777217U, most}));
+        }
+        EXPECT_NE(run({"info", path("n.exr")}).out.find("  16777217  4294967295  "), std::string::npos);
         for (const json& layer : layers) {
             const bool is_number = layer.at("channels") == json{"ids"} || layer.at("channels") == json{"object.number"};
             EXPECT_EQ(layer.at("differing_pixels"), is_number ? 2 : 0) << layer;

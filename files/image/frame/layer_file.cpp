@@ -34,9 +34,10 @@ std::string prefix_of(const std::string& channel) {
 
 }  // namespace
 
-void SampleRange::add(std::span<const float> samples, std::size_t stride) {
+template <class Sample>
+void SampleRange::add(std::span<const Sample> samples, std::size_t stride) {
     for (std::size_t i = 0; i < samples.size(); i += stride) {
-        const float value = samples[i];
+        const double value = samples[i];
         if (std::isfinite(value)) {
             least = std::min(least, value);
             most = std::max(most, value);
@@ -181,12 +182,36 @@ Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
 }
 
 Result<std::vector<SampleRange>> LayerFile::ranges(std::size_t part) {
-    const auto count = static_cast<std::uint32_t>(decoder_.parts()[part].channels.size());
+    const FilePart& from = decoder_.parts()[part];
+    const auto count = static_cast<std::uint32_t>(from.channels.size());
     std::vector<SampleRange> ranges(count);
+    const auto is_wide = [&](std::uint32_t channel) { return from.kinds[channel] == SampleKind::Integer32; };
     const auto add = [&](std::uint32_t, std::uint32_t, std::span<const float> samples) {
-        for (std::uint32_t c = 0; c < count; ++c) ranges[c].add(samples.subspan(c), count);
+        for (std::uint32_t c = 0; c < count; ++c)
+            if (!is_wide(c)) ranges[c].add(samples.subspan(c), count);
     };
     DARKROOM_TRY(decoder_.read(part, 0, count, add));
+    // Of these a float holds 24 bits.
+    std::vector<std::uint32_t> wide;
+    for (std::uint32_t c = 0; c < count; ++c)
+        if (is_wide(c)) wide.push_back(c);
+    if (wide.empty()) return ranges;
+    const std::size_t row_samples = wide.size() * from.width;
+    const std::uint32_t band = decoder_.band_rows(part, row_samples * sizeof(std::uint32_t));
+    std::vector<std::uint32_t> numbers(row_samples * std::min(band, from.height));
+    std::vector<SamplePlace> places;
+    for (std::size_t i = 0; i < wide.size(); ++i)
+        places.push_back({.channel = wide[i],
+                          .kind = SampleKind::Integer32,
+                          .first = reinterpret_cast<std::byte*>(numbers.data() + i),
+                          .pixel_bytes = static_cast<std::ptrdiff_t>(wide.size() * sizeof(std::uint32_t)),
+                          .row_bytes = static_cast<std::ptrdiff_t>(row_samples * sizeof(std::uint32_t))});
+    for (std::uint32_t row = 0; row < from.height; row += band) {
+        const std::uint32_t rows = std::min(band, from.height - row);
+        DARKROOM_TRY(decoder_.read_rows(part, row, rows, places));
+        const auto read = std::span<const std::uint32_t>(numbers).first(row_samples * rows);
+        for (std::size_t i = 0; i < wide.size(); ++i) ranges[wide[i]].add(read.subspan(i), wide.size());
+    }
     return ranges;
 }
 

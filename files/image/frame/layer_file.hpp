@@ -36,11 +36,12 @@ struct LayerSamples {
 /// The range of some samples, and how many are not finite.
 struct SampleRange {
     /// Of the finite ones; without any, least is above most.
-    float least = std::numeric_limits<float>::infinity(), most = -std::numeric_limits<float>::infinity();
+    double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
     std::uint64_t nan = 0, infinite = 0;
 
     [[nodiscard]] bool has_finite() const { return least <= most; }
-    void add(std::span<const float> samples, std::size_t stride);
+    template <class Sample>
+    void add(std::span<const Sample> samples, std::size_t stride);
     void add(const SampleRange& other);
 };
 

@@ -65,12 +65,20 @@ Result<Json> layers_of(LayerFile& file) {
          file.layers().first(std::min<std::size_t>(file.layers().size(), max_layers))) {
         darkroom::SampleRange range;
         for (const std::uint32_t channel : layer.channels) range.add(ranges[layer.part][channel]);
+        // Numbers of objects have all their digits.
+        const auto end = [&](double value) {
+            const bool is_whole = std::ranges::any_of(layer.channels, [&](std::uint32_t channel) {
+                return parts[layer.part].kinds[channel] == darkroom::SampleKind::Integer32;
+            });
+            return is_whole && value >= 0 && value == std::floor(value) ? Json(static_cast<std::uint64_t>(value))
+                                                                        : Json(value);
+        };
         out.push_back({{"layer", layer.name},
                        {"part", layer.part},
                        {"channels", file.channel_names(layer)},
                        {"samples", samples_of(parts[layer.part], layer)},
-                       {"min", range.has_finite() ? Json(range.least) : Json()},
-                       {"max", range.has_finite() ? Json(range.most) : Json()},
+                       {"min", range.has_finite() ? end(range.least) : Json()},
+                       {"max", range.has_finite() ? end(range.most) : Json()},
                        {"nan", range.nan},
                        {"infinite", range.infinite}});
     }
