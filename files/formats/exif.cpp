@@ -6,12 +6,12 @@
 namespace darkroom {
 namespace {
 
-constexpr std::size_t short_type = 3, long_type = 4;
+constexpr std::size_t short_type = 3, long_type = 4, directory_type = 13, long8_type = 16, directory8_type = 18;
 
 }  // namespace
 
 TiffTags::TiffTags(std::span<const std::byte> file)
-    : file_(file), is_little_(!file.empty() && file[0] == std::byte{'I'}) {}
+    : file_(file), is_little_(!file.empty() && file[0] == std::byte{'I'}), is_big_(number(2, 2) == 43) {}
 
 std::span<const std::byte> TiffTags::bytes(std::size_t at, std::size_t size) const {
     return at <= file_.size() && size <= file_.size() - at ? file_.subspan(at, size) : std::span<const std::byte>();
@@ -27,19 +27,23 @@ std::optional<std::size_t> TiffTags::number(std::size_t at, std::size_t size) co
 }
 
 std::optional<TiffTags::Value> TiffTags::find(std::size_t directory, std::size_t tag) const {
-    const std::size_t count = number(directory, 2).value_or(0);
+    const std::size_t pointer = is_big_ ? 8 : 4, counter = is_big_ ? 8 : 2, size = 4 + 2 * pointer;
+    const std::size_t count = number(directory, counter).value_or(0);
     for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t at = directory + 2 + i * 12;
-        if (bytes(at, 12).empty()) return std::nullopt;
-        if (number(at, 2) == tag) return Value{*number(at + 2, 2), *number(at + 4, 4), at + 8};
+        const std::size_t at = directory + counter + i * size;
+        if (bytes(at, size).empty()) return std::nullopt;
+        if (number(at, 2) == tag) return Value{*number(at + 2, 2), *number(at + 4, pointer), at + 4 + pointer};
     }
     return std::nullopt;
 }
 
 std::optional<std::size_t> TiffTags::whole(std::size_t directory, std::size_t tag) const {
     const std::optional<Value> found = find(directory, tag);
-    if (!found || (found->type != short_type && found->type != long_type)) return std::nullopt;
-    return number(found->at, found->type == short_type ? 2 : 4);
+    if (!found) return std::nullopt;
+    if (found->type == short_type) return number(found->at, 2);
+    if (found->type == long_type || found->type == directory_type) return number(found->at, 4);
+    if (is_big_ && (found->type == long8_type || found->type == directory8_type)) return number(found->at, 8);
+    return std::nullopt;
 }
 
 std::uint8_t orientation_of_exif(std::span<const std::byte> file) {

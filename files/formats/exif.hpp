@@ -9,18 +9,19 @@
 
 namespace darkroom {
 
-/// The directories of a TIFF file in memory (TIFF 6.0, 2), which may be damaged: what lies outside of it is not there.
+/// The directories of a TIFF file in memory (TIFF 6.0, 2, or BigTIFF as libtiff has it), which may be damaged: what
+/// lies outside of it is not there.
 class TiffTags {
   public:
     struct Value {
         std::size_t type = 0, count = 0;
-        std::size_t at = 0;  ///< where it lies, of at most four bytes; else where its place stands
+        std::size_t at = 0;  ///< where it lies, of at most four bytes, in BigTIFF eight; else where its place stands
     };
 
     explicit TiffTags(std::span<const std::byte> file);
-    [[nodiscard]] std::size_t first_directory() const { return number(4, 4).value_or(0); }
+    [[nodiscard]] std::size_t first_directory() const { return (is_big_ ? number(8, 8) : number(4, 4)).value_or(0); }
     [[nodiscard]] std::optional<Value> find(std::size_t directory, std::size_t tag) const;
-    /// A whole number of 16 or 32 bits.
+    /// A whole number of 16, 32 or, in BigTIFF, 64 bits.
     [[nodiscard]] std::optional<std::size_t> whole(std::size_t directory, std::size_t tag) const;
     /// Of so many bytes.
     [[nodiscard]] std::optional<std::size_t> number(std::size_t at, std::size_t size) const;
@@ -28,7 +29,7 @@ class TiffTags {
 
   private:
     std::span<const std::byte> file_;
-    bool is_little_ = false;
+    bool is_little_ = false, is_big_ = false;
 };
 
 /// 1 to 8, of a TIFF file's first directory (EXIF 2.32, 4.6.4); 1, upright, where there is none, or it is damaged.

@@ -164,6 +164,34 @@ TEST_F(CliBesidePixels, ExifSaysAdobeRgbWhereNothingElseSaysMore) {
     }
 }
 
+// libtiff writes the directory; it has no place for the index.
+TEST_F(CliBesidePixels, ExifOfBigTiffIsReadToo) {
+    for (const char* const mode : {"wl8", "wb8", "wl", "wb"}) {
+        TIFF* const tiff = TIFFOpen(path("big.tif").c_str(), mode);
+        ASSERT_NE(tiff, nullptr);
+        for (const auto& [tag, value] : {std::pair(TIFFTAG_IMAGEWIDTH, 1),
+                                         {TIFFTAG_IMAGELENGTH, 1},
+                                         {TIFFTAG_SAMPLESPERPIXEL, 3},
+                                         {TIFFTAG_BITSPERSAMPLE, 8},
+                                         {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB},
+                                         {TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG}})
+            TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+        std::array<std::uint8_t, 3> codes = color_codes;
+        ASSERT_EQ(TIFFWriteEncodedStrip(tiff, 0, codes.data(), 3), 3);
+        ASSERT_EQ(TIFFWriteDirectory(tiff), 1);
+        ASSERT_EQ(TIFFCreateEXIFDirectory(tiff), 0);
+        TIFFSetField(tiff, EXIFTAG_COLORSPACE, 2);  // Adobe RGB, as cameras write it
+        std::uint64_t exif = 0;
+        ASSERT_EQ(TIFFWriteCustomDirectory(tiff, &exif), 1);
+        ASSERT_EQ(TIFFSetDirectory(tiff, 0), 1);
+        TIFFSetField(tiff, TIFFTAG_EXIFIFD, exif);
+        ASSERT_EQ(TIFFRewriteDirectory(tiff), 1);
+        TIFFClose(tiff);
+        const Developed found = develop("big.tif");
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found.light[i], adobe_light()[i], 2e-4) << mode << i;
+    }
+}
+
 /// A page of 2x2 of one grey; kind: NewSubfileType.
 void add_page(TIFF* tiff, std::uint8_t grey, std::uint32_t kind = 0, std::uint32_t side = 2) {
     TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, kind);
