@@ -254,6 +254,26 @@ TEST_F(CliBesidePixels, OfPagesTheFirstWholeOneIsReadAndTheOthersAreTold) {
     const Outcome compared = run({"compare", path("three.tif"), path("three.tif")});
     EXPECT_EQ(compared.code, 0);
     EXPECT_NE(compared.err.find("three.tif: has 3 pages: the first is read"), std::string::npos) << compared.err;
+    // Pictures of numbers, too: masks, and tables.
+    write("mask.toml", "format = 1\n[[stack]]\neffect = \"auto_exposure\"\nmetering_mask = \"three.tif\"\n");
+    write("table.toml", "format = 1\n[[stack]]\neffect = \"lut\"\nlut = \"table.png\"\n");
+    std::string rows;
+    for (int i = 0; i < 64; ++i) {
+        if (i % 8 == 0) rows += '\0';
+        for (const int value : {i % 4, i / 4 % 4, i / 16}) rows += static_cast<char>(85 * value);
+    }
+    write("table.png",
+          png_start + png_header(8, 8, 8, 2) + png_chunk("acTL", big_endian(12, 4) + big_endian(0, 4)) +
+              png_chunk("fcTL", big_endian(0, 4) + big_endian(8, 4) + big_endian(8, 4) + std::string(14, '\0')) +
+              png_chunk("IDAT", stored(rows)) + png_chunk("IEND", ""));
+    for (const auto& [look, line] :
+         {std::pair("mask", "three.tif: has 3 pages: the first is read"),
+          std::pair("table", "table.png: is an animation of 12 frames: the first is read")}) {
+        const Outcome told =
+            run({"develop", path("levels.tif"), "--look", path(look) + ".toml", "-o", path("o.png"), "-q"});
+        EXPECT_EQ(told.code, 0) << told.err;
+        EXPECT_NE(told.err.find(line), std::string::npos) << told.err;
+    }
     TestTiff round = TestTiff::gray(2, 2);
     round.next = 8;
     write("round.tif", round.text());

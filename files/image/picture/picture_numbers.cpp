@@ -7,14 +7,17 @@
 #include <cmath>
 
 #include "core/text/param_text.hpp"
+#include "formats/file_format.hpp"
 #include "image/picture/alpha.hpp"
 #include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
 namespace {
 
-Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(const FilePart&)) {
+Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(const FilePart&),
+                           std::string* left_out) {
     DARKROOM_TRY_VALUE(const OpenedSource opened, open_upright(bytes));
+    if (left_out != nullptr && opened.format->left_out != nullptr) *left_out = opened.format->left_out(bytes);
     const FilePart& part = opened.source->parts().front();
     if (check != nullptr) DARKROOM_TRY(check(part));
     ResourceImage image{part.width, part.height, {}};
@@ -39,9 +42,10 @@ Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(c
 
 }  // namespace
 
-Result<ResourceImage> read_numbers(const std::filesystem::path& path, Result<> (*check)(const FilePart&)) {
+Result<ResourceImage> read_numbers(const std::filesystem::path& path, Result<> (*check)(const FilePart&),
+                                   std::string* left_out) {
     DARKROOM_TRY_VALUE(const std::vector<std::byte> bytes, read_image_file(path));
-    Result<ResourceImage> image = read(bytes, check);
+    Result<ResourceImage> image = read(bytes, check, left_out);
     if (!image)
         return failure(Error{image.error().fault, fmt::format("{}: {}", printable(path.string()), image.error().text)});
     return image;

@@ -21,7 +21,9 @@ Result<ResourceData> load_resource_file(const std::filesystem::path& path, FileU
         return ResourceData(std::move(found.file.table));
     }
     if (use == FileUse::Numbers) {
-        DARKROOM_TRY_VALUE(ResourceImage numbers, read_numbers(path));
+        std::string left_out;
+        DARKROOM_TRY_VALUE(ResourceImage numbers, read_numbers(path, nullptr, &left_out));
+        if (!left_out.empty()) tell({&left_out, 1});
         return ResourceData(std::move(numbers));
     }
     DARKROOM_TRY_VALUE(

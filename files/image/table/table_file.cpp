@@ -181,12 +181,15 @@ Result<FoundTable> read_picture_table(const fs::path& path) {
         const Result<std::uint32_t> edge = table_image_edge(part.width, part.height);
         return edge ? Result<>() : failure(edge.error());
     };
-    DARKROOM_TRY_VALUE(const ResourceImage image, read_numbers(path, check));
+    std::string left_out;
+    DARKROOM_TRY_VALUE(const ResourceImage image, read_numbers(path, check, &left_out));
     Result<ImageTable> found = table_of_image(image);
     if (!found)
         return failure(Error{found.error().fault, fmt::format("{}: {}", printable(path.string()), found.error().text)});
-    return FoundTable{.file = {.table = std::move(found->table), .comments = {"A picture: " + found->layout}},
-                      .format = "a picture"};
+    FoundTable out{.file = {.table = std::move(found->table), .comments = {"A picture: " + found->layout}},
+                   .format = "a picture"};
+    if (!left_out.empty()) out.warnings.push_back(std::move(left_out));
+    return out;
 }
 
 }  // namespace
