@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/icc_profile.hpp"
+#include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
 #include "image/test_bytes.hpp"
 #include "tests/cli/cli_support.hpp"
@@ -234,8 +235,8 @@ TEST_F(CliGainMap, TheGainMayBeOfOtherColorsThanThePicture) {
     }
 }
 
-// libultrahdr 1.4.0 wrote it from light in Rec. 709: a base in Display P3, of whose colours the gain is. The numbers are
-// what that library decodes.
+// libultrahdr 1.4.0 wrote it from light in Rec. 709: a base in Display P3, of whose colours the gain is. The numbers
+// are what that library decodes.
 TEST_F(CliGainMap, AFileOfLibultrahdrIsTheLightThatItDecodes) {
     const Picture found = light(std::string(test::source_folder) + "/tests/meaning/ultra_hdr.jpg");
     ASSERT_EQ(found.width, 32u);
@@ -288,6 +289,105 @@ END
         // The library draws a smaller map half of its pixel aside, so the light that was encoded is the referee.
         EXPECT_LT(flip(gamut + ".pfm", gamut + "_4.jpg"), 0.9 * flip(gamut + ".pfm", gamut + "_4.pfm")) << gamut;
     }
+}
+
+// A room with a lamp that is brighter than the display of 1000 cd/m2 shows.
+class CliGainMapWriting : public CliGainMap {
+  protected:
+    void make_files() override {
+        CliGainMap::make_files();
+        FrameFile frame;
+        frame.color = Picture(160, 120);
+        for (std::uint32_t y = 0; y < 120; ++y)
+            for (std::uint32_t x = 0; x < 160; ++x) {
+                const double away = std::hypot(x - 110.0, y - 50.0) / 25, lamp = 12 * std::exp(-away * away);
+                const auto color = [&](double ramp, double tint) {
+                    return static_cast<float>(0.01 + ramp * x / 160 + tint * lamp);
+                };
+                const std::array pixel{color(0.8, 1), color(0.5, 0.8), color(0.2, 0.5), 1.0f};
+                std::ranges::copy(pixel, frame.color.at(x, y));
+            }
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+    }
+    void develop(std::vector<std::string> flags, const std::string& out, double peak = 1000) const {
+        flags.insert(flags.begin(), {"develop", path("frame.exr"), "-q", "-o", path(out)});
+        flags.insert(flags.end(), {"--tonemap-curve", "bt2390", "--tonemap-white", "12", "--tonemap-peak-nits",
+                                   fmt::format("{}", peak), "--no-bloom"});
+        const Outcome outcome = run(flags);
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    [[nodiscard]] double flip(const std::string& reference, const std::string& found) const {
+        const Outcome outcome = run({"compare", path(reference), path(found), "--json"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        if (outcome.code != 0) return 1;
+        return nlohmann::json::parse(outcome.out).at("layers").at(0).at("flip").at("mean").get<double>();
+    }
+};
+
+TEST_F(CliGainMapWriting, BothPicturesAreDevelopedFromTheScenesLight) {
+    develop({"--gain-map"}, "both.jpg");
+    develop({"--bits", "float"}, "bright.exr");
+    EXPECT_LT(flip("bright.exr", "both.jpg"), 0.015);
+    // The base is the picture for displays of standard range, by the same look, to the last bit.
+    develop({}, "standard.jpg", 203);
+    const std::string both = content(path("both.jpg")), mark = "Item:Length=\"";
+    const std::size_t length = std::stoul(both.substr(both.find(mark) + mark.size()));
+    ASSERT_EQ(both.substr(both.size() - length, 3), "\xff\xd8\xff");
+    write("base.jpg", both.substr(0, both.size() - length));
+    EXPECT_EQ(picture("base.jpg"), picture("standard.jpg"));
+}
+
+TEST_F(CliGainMapWriting, LibultrahdrReadsTheSameLight) {
+    if (run_lines("python3 -c 'import imagecodecs, numpy'").code != 0)
+        GTEST_SKIP() << "python3 has no imagecodecs (PyPI), which holds libultrahdr";
+    develop({"--gain-map"}, "both.jpg");
+    develop({"--bits", "float"}, "bright.exr");
+    const Outcome made = run_lines(R"(python3 - <<'END'
+import imagecodecs
+light = imagecodecs.ultrahdr_decode(open("both.jpg", "rb").read())[..., :3]
+with open("theirs.pfm", "wb") as file:
+    file.write(b"PF\n160 120\n-1\n" + light[::-1].astype("<f4").tobytes())
+END
+)");
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_LT(flip("both.jpg", "theirs.pfm"), 0.01);
+    EXPECT_LT(flip("bright.exr", "theirs.pfm"), 0.02);
+}
+
+TEST_F(CliGainMapWriting, GainmapJsFindsItsNumbersInBothPlaces) {
+    if (run_lines("node -e \"require('@monogrid/gainmap-js')\"").code != 0)
+        GTEST_SKIP() << "node has no @monogrid/gainmap-js (npm, NODE_PATH)";
+    develop({"--gain-map"}, "both.jpg");
+    const Outcome told = run_lines(R"(node - <<'END'
+const { extractGainmapFromJPEG, extractXMP } = require("@monogrid/gainmap-js");
+const data = new Uint8Array(require("fs").readFileSync("both.jpg"));
+extractGainmapFromJPEG(data).then((found) => {
+    const xmp = extractXMP(data);
+    for (const of of [found.metadata, xmp])
+        console.log(of.gainMapMin[1], of.gamma[0], of.offsetSdr[2], of.offsetHdr[0], of.hdrCapacityMin);
+    console.log(Math.abs(found.metadata.gainMapMax[0] - xmp.gainMapMax[0]) < 1e-4,
+                Math.abs(xmp.hdrCapacityMax - Math.log2(1000 / 203)) < 0.01);
+});
+END
+)");
+    EXPECT_EQ(told.out, "-0.25 0.5 0.015625 0.015625 0\n-0.25 0.5 0.015625 0.015625 0\ntrue true\n") << told.err;
+}
+
+TEST_F(CliGainMapWriting, WhereThereIsNothingToShowItIsRefused) {
+    const std::string frame = path("frame.exr");
+    const std::vector<std::string> bright{"--tonemap-curve", "bt2390", "--tonemap-peak-nits", "1000"};
+    const auto refused = [&](const std::string& out, std::vector<std::string> flags, const std::string& why) {
+        flags.insert(flags.begin(), {"develop", frame, "-o", path(out), "--gain-map"});
+        expect_refused(flags, 1, why);
+    };
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), bright.begin(), bright.end());
+        return more;
+    };
+    refused("out.jpg", {}, "--gain-map: the look ends at white on every display");
+    refused("out.png", bright, "out.png has none; .jpg has");
+    refused("out.jpg", with({"--reference"}), "works without --reference");
+    refused("out.jpg", with({"--output-space", "srgb"}), "works without --output-space");
 }
 
 }  // namespace

@@ -109,6 +109,40 @@ void light_of_inks(const std::uint8_t* inks, std::uint8_t* rgb, std::size_t widt
             rgb[c] = static_cast<std::uint8_t>(share(inks[c]) * share(inks[3]) * 255 + 0.5F);
 }
 
+/// Light of rows of codes; between two codes where luma and chroma say more than red, green and blue of 8 bits, which
+/// would be up to 2 % off in the dark.
+class LightOfCodes {
+  public:
+    explicit LightOfCodes(const TransferCurve& curve) {
+        constexpr double most = std::tuple_size_v<decltype(light_)> - 1;
+        for (std::size_t i = 0; i < light_.size(); ++i)
+            light_[i] = static_cast<float>(curve.decode(static_cast<double>(i) / most));
+    }
+
+    void put(std::span<const std::uint8_t> row, const JpegReader& jpeg, std::span<float> rgb) const {
+        const std::size_t step = jpeg.components == 1 ? 1 : 3, last = step - 1;
+        for (std::size_t x = 0; x < jpeg.width; ++x) {
+            const std::uint8_t* const from = &row[x * step];
+            std::array<float, 3> code{float(from[0]), float(from[last / 2]), float(from[last])};
+            if (jpeg.has_luma) {  // ITU-T T.871, 7
+                const float luma = code[0], blue = code[1] - 128, red = code[2] - 128;
+                code = {luma + 1.402f * red, luma - 0.344136f * blue - 0.714136f * red, luma + 1.772f * blue};
+            }
+            for (std::size_t c = 0; c < 3; ++c) rgb[x * 3 + c] = at(code[c]);
+        }
+    }
+
+  private:
+    [[nodiscard]] float at(float code) const {
+        const float place = std::clamp(code / 255, 0.0f, 1.0f) * static_cast<float>(light_.size() - 1);
+        const auto first = static_cast<std::size_t>(place);
+        const std::size_t second = std::min(first + 1, light_.size() - 1);
+        return std::lerp(light_[first], light_[second], place - static_cast<float>(first));
+    }
+
+    std::array<float, 4096> light_{};
+};
+
 class JpegSource final : public AttributedSource {
   public:
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
@@ -153,10 +187,7 @@ class JpegSource final : public AttributedSource {
         if (jpeg.width > jpeg_->width || jpeg.height > jpeg_->height)
             return map_error(fmt::format("is {}x{}, its picture's {}x{} is allowed", jpeg.width, jpeg.height,
                                          jpeg_->width, jpeg_->height));
-        const TransferCurve curve = color_of_jpeg(file_).coding.value_or(ColorCoding{}).curve;
-        constexpr double most = std::tuple_size_v<decltype(light_of_code_)> - 1;
-        for (std::size_t i = 0; i < light_of_code_.size(); ++i)
-            light_of_code_[i] = static_cast<float>(curve.decode(static_cast<double>(i) / most));
+        light_of_codes_.emplace(color_of_jpeg(file_).coding.value_or(ColorCoding{}).curve);
         return {};
     }
 
@@ -175,26 +206,9 @@ class JpegSource final : public AttributedSource {
     }
     [[nodiscard]] static Failure map_error(const std::string& why) { return user_error("its gain map: " + why); }
 
-    /// Between two of many codes; codes of 8 bits would be up to 2 % off in the dark.
-    [[nodiscard]] float light_of(float code) const {
-        const float place = std::clamp(code / 255, 0.0f, 1.0f) * static_cast<float>(light_of_code_.size() - 1);
-        const auto first = static_cast<std::size_t>(place);
-        const std::size_t second = std::min(first + 1, light_of_code_.size() - 1);
-        return std::lerp(light_of_code_[first], light_of_code_[second], place - static_cast<float>(first));
-    }
-
     /// The row in `row_` as light, to its places.
     [[nodiscard]] Result<> put_light(std::span<const SamplePlace> places, std::uint32_t row, std::uint32_t y) {
-        const std::size_t step = jpeg_->components == 1 ? 1 : 3, last = step - 1;
-        for (std::size_t x = 0; x < jpeg_->width; ++x) {
-            const std::uint8_t* const from = &row_[x * step];
-            std::array<float, 3> code{float(from[0]), float(from[last / 2]), float(from[last])};
-            if (jpeg_->has_luma) {  // ITU-T T.871, 7
-                const float luma = code[0], blue = code[1] - 128, red = code[2] - 128;
-                code = {luma + 1.402f * red, luma - 0.344136f * blue - 0.714136f * red, luma + 1.772f * blue};
-            }
-            for (std::size_t c = 0; c < 3; ++c) light_[x * 3 + c] = light_of(code[c]);
-        }
+        light_of_codes_->put(row_, *jpeg_, light_);
         gain_->apply(light_, row + y, jpeg_->height);
         for (const SamplePlace& place : places) {
             if (place.kind != SampleKind::Float)
@@ -253,11 +267,25 @@ class JpegSource final : public AttributedSource {
     std::vector<std::uint8_t> row_;
     std::optional<GainMap> map_;
     std::optional<GainRows> gain_;  // of `map_`, once rows are read
-    std::array<float, 4096> light_of_code_{};
+    std::optional<LightOfCodes> light_of_codes_;
     std::vector<float> light_;
 };
 
 }  // namespace
+
+Result<std::vector<float>> light_of_jpeg(std::span<const std::byte> bytes) {
+    JpegReader jpeg(bytes);
+    bool is_read = jpeg.read_header(true) && (jpeg.components == 1 || jpeg.components == 3) && jpeg.start();
+    const LightOfCodes codes({TransferCurve::Kind::Srgb});
+    std::vector<std::uint8_t> row(std::size_t{jpeg.width} * jpeg.components);
+    std::vector<float> out(std::size_t{jpeg.width} * jpeg.height * 3);
+    for (std::size_t y = 0; is_read && y < jpeg.height; ++y) {
+        is_read = jpeg.read_row(row.data());
+        codes.put(row, jpeg, std::span(out).subspan(y * jpeg.width * 3));
+    }
+    if (!is_read) return machine_error(fmt::format("cannot be read back: {}", one_printable_line(jpeg.error)));
+    return out;
+}
 
 Result<std::unique_ptr<PictureSource>> open_jpeg(std::span<const std::byte> bytes) { return JpegSource::open(bytes); }
 

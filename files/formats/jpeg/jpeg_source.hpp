@@ -12,4 +12,7 @@ namespace darkroom {
 /// Of bytes that check_jpeg() has passed; they outlive the source.
 [[nodiscard]] Result<std::unique_ptr<PictureSource>> open_jpeg(std::span<const std::byte> bytes);
 
+/// Linear light of a picture that was written here as sRGB: red, green, blue.
+[[nodiscard]] Result<std::vector<float>> light_of_jpeg(std::span<const std::byte> bytes);
+
 }  // namespace darkroom

@@ -15,6 +15,8 @@
 #include "core/assert.hpp"
 #include "core/files.hpp"
 #include "core/text/lower.hpp"
+#include "formats/jpeg/gain_map_write.hpp"
+#include "formats/jpeg/jpeg_source.hpp"
 #include "image/codec/codecs.hpp"
 #include "image/exr/write.hpp"
 #include "image/picture/alpha.hpp"
@@ -141,14 +143,28 @@ namespace {
 struct Written {
     const FileFormat* format = nullptr;
     EncodeDesc desc;
+    std::shared_ptr<const Picture> light;  ///< WriteOptions::light
 };
+
+/// A map as good as the picture, which makes up for what the picture has lost in JPEG.
+Result<std::vector<std::byte>> with_gain_map(const Written& to, std::span<const std::byte> base,
+                                             const Codecs& others) {
+    DARKROOM_TRY_VALUE(const std::vector<float> light, light_of_jpeg(base));
+    const MadeGainMap map = make_gain_map(light, to.light->pixels);
+    EncodeDesc desc = to.desc;
+    desc.samples = map.codes.data();
+    DARKROOM_TRY_VALUE(const std::vector<std::byte> picture, others.encode(*to.format, desc));
+    return join_gain_map(base, picture, map);
+}
 
 /// Samples of 8 or 16 bits, or floats, into any format but OpenEXR.
 Result<> write_samples(const std::filesystem::path& path, const Written& to) {
     const auto encode = [&]() -> Result<std::vector<std::byte>> {
         if (to.format->encode != nullptr) return to.format->encode(to.desc);
         DARKROOM_TRY_VALUE(const Codecs* const others, codecs());
-        return others->encode(*to.format, to.desc);
+        if (!to.light) return others->encode(*to.format, to.desc);
+        DARKROOM_TRY_VALUE(const std::vector<std::byte> base, others->encode(*to.format, to.desc));
+        return with_gain_map(to, base, *others);
     };
     const auto bytes = encode();
     if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
@@ -247,7 +263,8 @@ Result<Written> describe(const std::filesystem::path& path, std::uint32_t width,
                          .chroma = options.chroma,
                          .is_associated = options.alpha && !is_integer(samples),
                          .compression = options.compression,
-                         .color = color_of(options, samples)}};
+                         .color = color_of(options, samples)},
+                .light = options.light};
     if (!options.space && options.view == nullptr) out.desc.color = srgb_color;
     return out;
 }

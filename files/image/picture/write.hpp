@@ -44,6 +44,8 @@ struct WriteOptions {
     std::shared_ptr<const ColorChain> view;
     /// What the numbers are; not given: sRGB, and linear Rec. 709 in files of floats. PNG and OpenEXR alone say it.
     std::optional<OutputSpace> space;
+    /// JPEG of sRGB: the same picture in linear light, as a brighter display has it, for a gain map; null: none.
+    std::shared_ptr<const Picture> light;
     std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
 };
 

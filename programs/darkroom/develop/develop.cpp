@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -53,7 +54,7 @@ struct Options {
     std::string gaps;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6, .is_rate = true}};
-    bool is_reference = false, keeps_layers = false;
+    bool is_reference = false, keeps_layers = false, has_gain_map = false;
 };
 
 /// A name of files with %V, which stands for the eye, and %v, for the first letter of it.
@@ -83,6 +84,7 @@ struct Job {
     std::size_t skipped = 0;  ///< pictures that are there already
     std::size_t jobs = 0;
     darkroom::Look look;
+    std::optional<darkroom::Look> brighter;  ///< for a gain map: the look as it was given
     Timeline timeline;
     darkroom::FrameOptions frame;
     darkroom::WriteOptions write;
@@ -224,6 +226,36 @@ std::optional<double> time_of(const Job& job, std::size_t place) {
     return time ? std::optional(time->value_or(0)) : std::nullopt;
 }
 
+/// For a gain map a look is developed twice: as it is, and with each peak beyond white at white.
+Result<> part_looks(const Options& options, Job& job) {
+    if (!options.has_gain_map) return {};
+    if (options.is_reference) return user_error("--gain-map: works without --reference");
+    if (job.stream) return user_error("--gain-map: works for files, not for a stream");
+    if (job.write.space || job.write.view || job.write.alpha)
+        return user_error("--gain-map: works without --output-space, --display and --alpha");
+    for (const Step& step : job.steps)
+        if (const auto format = darkroom::written_format(step.output); !format || !(*format)->has_quality)
+            return user_error(fmt::format("--gain-map: {} has none; .jpg has",
+                                          darkroom::printable(step.output.string())));
+    darkroom::Look standard = job.look;
+    bool is_brighter = false;
+    for (darkroom::LookEntry& entry : standard.entries) {
+        const darkroom::ParamInfo* const row = entry.effect->parameters.find("peak_nits");
+        if (entry.state.enabled.on == 0 || entry.effect->makes == nullptr || row == nullptr) continue;
+        const darkroom::ColorState made = entry.effect->makes({}, entry.words.data());
+        if (made.domain != darkroom::Domain::DisplayLinear || made.peak_nits <= made.white_nits) continue;
+        entry.words[row->word] = std::bit_cast<std::uint32_t>(made.white_nits);
+        is_brighter = true;
+    }
+    if (!is_brighter)
+        return user_error("--gain-map: the look ends at white on every display; --tonemap-curve bt2390 "
+                          "--tonemap-peak-nits 1000 reaches beyond");
+    job.brighter = std::move(job.look);
+    job.look = std::move(standard);
+    suit(*job.brighter, darkroom::DevelopTarget::SceneLinear, job.write);
+    return {};
+}
+
 /// `eye`: one of those that are asked for.
 Result<Job> job_of(const Options& options, const std::string& eye) {
     Job job{.eye = eye, .out = with_eye(options.out, eye)};
@@ -270,6 +302,7 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     const Motion motion(job.look, job.timeline, [&job](std::size_t place) { return time_of(job, place); });
     DARKROOM_TRY_VALUE(const std::uint32_t moved_pre_roll, motion.pre_roll(job.look, delta_time, last));
     DARKROOM_TRY(add_steps(options, std::max(pre_roll, moved_pre_roll), job));
+    DARKROOM_TRY(part_looks(options, job));
     // What is wrong with one is told before any work, unless only its own frame is to fail.
     if (darkroom::has_number_pattern(job.frame.camera_file) && !options.run.keeps_going)
         for (const Step& step : job.steps)
@@ -315,7 +348,8 @@ class Develop {
         std::shared_ptr<const std::vector<std::uint8_t>> ui;
         darkroom::DevelopInput input;
         darkroom::DevelopedPicture picture;
-        std::vector<std::byte> packed;  ///< of a stream: what goes out
+        std::shared_ptr<darkroom::Picture> light;  ///< for a gain map
+        std::vector<std::byte> packed;             ///< of a stream: what goes out
         VkExtent2D stored{}, extent{};  ///< of the frame in its file, and of the picture
     };
 
@@ -331,6 +365,15 @@ class Develop {
                                           .has_timers = options_.run.has_timings});
         DARKROOM_TRY(darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}));
         developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
+        if (job_.brighter) {
+            brighter_composer_ = std::make_unique<darkroom::Composer>(*made);
+            DARKROOM_TRY(darkroom::apply(*job_.brighter, *brighter_composer_, {.keeps = job_.timeline.entries()}));
+            darkroom::DevelopDesc desc = job_.develop;
+            desc.target = darkroom::DevelopTarget::SceneLinear;
+            desc.color.reset();
+            desc.frames_in_flight = 1;
+            brighter_developer_ = std::make_unique<darkroom::Developer>(*made, desc);
+        }
         device_ = std::move(made);
         composer_ = std::move(composer);
         return {};
@@ -396,9 +439,21 @@ class Develop {
             tell_of_what_is_left_out(i, left_out);
             return {};
         }
+        if (job_.brighter) DARKROOM_TRY(develop_brighter(i));
         DARKROOM_TRY(developer_->submit(*composer_, item.input));
         tell_of_what_is_left_out(i, composer_->current_plan()->left_out);
         if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
+        return {};
+    }
+
+    Result<> develop_brighter(std::size_t i) {
+        Item& item = items_[i];
+        DARKROOM_TRY(brighter_motion_.advance(*brighter_composer_, job_.steps[i].place, item.input.time));
+        DARKROOM_TRY_VALUE(darkroom::DevelopedPicture made,
+                           brighter_developer_->develop(*brighter_composer_, item.input));
+        item.light = std::make_shared<darkroom::Picture>();
+        item.light->width = made.extent.width, item.light->height = made.extent.height;
+        item.light->pixels = std::move(made.pixels);
         return {};
     }
 
@@ -444,6 +499,7 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
+        options.light = std::move(items_[i].light);
         options.is_cropped = is_cropped();
         options.is_stretched = is_stretched(items_[i]);
         if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
@@ -508,10 +564,12 @@ class Develop {
     std::optional<PictureStream> stream_;
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;
-    std::unique_ptr<darkroom::Composer> composer_;
+    std::unique_ptr<darkroom::Composer> composer_, brighter_composer_;
     Motion motion_{job_.look, job_.timeline,  // moves the composer, so it goes first
                    [this](std::size_t place) { return time_of(job_, place); }};
-    std::unique_ptr<darkroom::Developer> developer_;
+    Motion brighter_motion_{job_.brighter.value_or(darkroom::Look{}), job_.timeline,
+                            [this](std::size_t place) { return time_of(job_, place); }};
+    std::unique_ptr<darkroom::Developer> developer_, brighter_developer_;
     std::optional<std::vector<std::string>> last_left_out_;
     std::size_t next_place_ = 0;
     /// Of a stream with gaps: the picture before.
@@ -563,6 +621,8 @@ static Command add_develop(CommandFlags program, std::span<const darkroom::LookE
         .type_name("WxH");
     command.add_flag("--keep-layers", options->keeps_layers,
                      "Puts the frame's other layers beside the picture in an .exr file");
+    command.add_flag("--gain-map", options->has_gain_map,
+                     "Adds to a JPEG what brighter displays show of it (Ultra HDR)");
     command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
     command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");

@@ -110,8 +110,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
     if (has_look_flag)
         command
             .add_option("--look", file,
-                        "A look file (TOML), a scene with one, or the name of one that ships: night. Default: the "
-                        "scene's, or the defaults, for files without occlusion and haze")
+                        "A look (TOML), a scene, or one that ships: night; default: the scene's")
             .names_look()
             .type_name("FILE")
             .group(group);
