@@ -12,7 +12,7 @@ struct EffectInfo;
 
 struct AnamorphicStreaks {
     /// Amount of the streaks added to the picture. [0, 64]
-    float intensity = 0.5f;
+    float intensity = 0.2f;
     /// Light above this value makes streaks. [0, 65504]
     float threshold = 1.0f;
     /// Distance at which a streak has fallen to 1/e, in a picture of 1080 lines. [8, 512] px

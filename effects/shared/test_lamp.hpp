@@ -57,11 +57,13 @@ class AddedLight {
 };
 
 /// What a stack adds of a pixel of light, in all, at every place of five sizes that is `border` from the edges, is
-/// within 2 % of `share`, which is that of a red, a green and a blue one.
+/// within 2 % of `share`, which is that of a red, a green and a blue one. Beside it, what lies on the way in 6 bits of
+/// mantissa may be rounded to either side.
 inline void expect_lamps_count_alike(const std::function<void(Composer&)>& fill, const std::array<double, 3>& share) {
     constexpr std::array<VkExtent2D, 5> sizes{{{104, 80}, {107, 81}, {101, 86}, {110, 87}, {103, 83}}};
     constexpr std::uint32_t border = 36;
     constexpr float light = 100;
+    const double allowed = 0.02 + (gpu::test::is_lavapipe() ? 0 : 0x1p-6);
     for (const VkExtent2D size : sizes) {
         AddedLight added(fill, size);
         // A lamp of each colour at once, so far apart that none counts for another.
@@ -75,7 +77,7 @@ inline void expect_lamps_count_alike(const std::function<void(Composer&)>& fill,
                 for (std::uint32_t c = 0; c < 3; ++c) picture.rgba[picture.index(x + c * apart, y) + c] = light;
                 const std::array<double, 3> sums = added.of(picture);
                 for (std::uint32_t c = 0; c < 3; ++c)
-                    EXPECT_NEAR(sums[c] / double{light}, share[c], 0.02 * share[c])
+                    EXPECT_NEAR(sums[c] / double{light}, share[c], allowed * share[c])
                         << size.width << 'x' << size.height << ' ' << x + c * apart << ", " << y;
             }
     }

@@ -191,7 +191,8 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({"develop", path("none.exr"), "-o", out}, 1, "none.exr");
     expect_refused({"develop", path(""), "-o", out}, 1, "folder");
     expect_refused({"develop", write("text.exr", "hello"), "-o", out}, 1, "text.exr");
-    expect_refused({"develop", frame, "--vignette", "0.5", "-o", out}, 1, "0.5: there is no such file");
+    expect_refused({"develop", frame, "--vignette", "0.5", "-o", out}, 1,
+                   "--vignette: takes no value, did you mean '--vignette-intensity 0.5'?");
     expect_refused({"develop", frame, "-o", path("none/x.png")}, 1, "none");
     expect_refused({"develop", frame, "-o", path("x.xyz")}, 1, ".xyz");
     expect_refused({"develop", frame, "-o", frame}, 1, "would be overwritten");
