@@ -129,14 +129,20 @@ std::vector<double> numbers_of(const Imf::Attribute& attribute) {
 }
 
 // Luminance and its chroma are offered as the colour that OpenEXR makes of them.
-void turn_into_color(OpenPart& part, std::size_t part_count) {
+Result<> turn_into_color(OpenPart& part, std::size_t part_count) {
     const Imf::ChannelList& stored = part.header().channels();
-    part.is_luminance_chroma = part_count == 1 && stored.findChannel("Y") != nullptr &&
-                               stored.findChannel("RY") != nullptr && stored.findChannel("BY") != nullptr;
-    if (!part.is_luminance_chroma) return;
+    const Imf::Channel *const ry = stored.findChannel("RY"), *const by = stored.findChannel("BY");
+    part.is_luminance_chroma = part_count == 1 && stored.findChannel("Y") != nullptr && ry != nullptr && by != nullptr;
+    if (!part.is_luminance_chroma) return {};
+    // OpenEXR makes a grey picture of any other.
+    for (const Imf::Channel* const chroma : {ry, by})
+        if (chroma->xSampling != 2 || chroma->ySampling != 2)
+            return user_error(fmt::format("RY and BY are sampled every {} x {} pixels: allowed is 2 x 2",
+                                          chroma->xSampling, chroma->ySampling));
     for (Channel& channel : part.channels)
         for (const auto& [luminance_chroma, color] : {std::pair("RY", "R"), std::pair("Y", "G"), std::pair("BY", "B")})
             if (channel.name == luminance_chroma) channel.name = color;
+    return {};
 }
 
 FilePart describe(const OpenPart& part) {
@@ -285,7 +291,7 @@ Result<std::unique_ptr<PictureSource>> ExrSource::open(std::span<const std::byte
         const Imf::ChannelList& stored = part.header().channels();
         for (auto channel = stored.begin(); channel != stored.end(); ++channel)
             part.channels.push_back({channel.name(), channel.channel(), part.channels.size()});
-        turn_into_color(part, static_cast<std::size_t>(made.file->parts()));
+        DARKROOM_TRY(turn_into_color(part, static_cast<std::size_t>(made.file->parts())));
         std::sort(part.channels.begin(), part.channels.end(),
                   [](const Channel& a, const Channel& b) { return a.rank() < b.rank(); });
         out->parts_.push_back(describe(part));

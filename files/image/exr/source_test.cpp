@@ -191,6 +191,32 @@ TEST_F(ImageExrSource, LuminanceAndChromaAreColor) {
     }
 }
 
+// OpenEXR would make a grey picture of it.
+TEST_F(ImageExrSource, ChromaOfAnotherSizeIsRefused) {
+    constexpr int side = 8;
+    for (const int step : {1, 4}) {
+        Imf::Header header(side, side);
+        std::vector<half> values(side * side, half(0.5f));
+        Imf::FrameBuffer buffer;
+        for (const char* const name : {"Y", "RY", "BY"}) {
+            const int own = name == std::string_view("Y") ? 1 : step;
+            header.channels().insert(name, Imf::Channel(Imf::HALF, own, own));
+            buffer.insert(name,
+                          Imf::Slice(Imf::HALF, reinterpret_cast<char*>(values.data()), 2, 2 * side / own, own, own));
+        }
+        {
+            Imf::OutputFile out(file("yc.exr").c_str(), header);
+            out.setFrameBuffer(buffer);
+            out.writePixels(side);
+        }
+        const auto frame = read_frame(file("yc.exr"));
+        ASSERT_FALSE(frame);
+        EXPECT_NE(frame.error().text.find(fmt::format("sampled every {} x {} pixels: allowed is 2 x 2", step, step)),
+                  std::string::npos)
+            << frame.error().text;
+    }
+}
+
 TEST_F(ImageExrSource, SubsampledChannelsFillTheirPixels) {
     constexpr int width = 10, height = 8;
     Imf::Header header(width, height);
