@@ -321,6 +321,57 @@ TEST_F(DecodersTiff, PlainOnesAreAsOpenImageIoHasThem) {
     }
 }
 
+// Entries have 16 bits, and as many as the file gives them are read.
+TEST_F(DecodersTiff, APaletteIsReadInAllItsBits) {
+    constexpr std::uint32_t width = 37, height = 19;
+    for (const std::uint16_t bits : std::array<std::uint16_t, 4>{1, 2, 4, 8})
+        for (const bool is_big_endian : {false, true}) {
+            const auto count = std::size_t{1} << bits;
+            std::mt19937 random(bits);
+            std::array<std::vector<std::uint16_t>, 3> map;
+            for (auto& values : map)
+                for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<std::uint16_t>(random()));
+            const std::size_t row_bytes = (std::size_t{width} * bits + 7) / 8;
+            std::vector<unsigned char> packed(row_bytes * height);
+            for (unsigned char& value : packed) value = static_cast<unsigned char>(random());
+            {
+                const std::unique_ptr<TIFF, decltype(&TIFFClose)> tiff(
+                    TIFFOpen(file("a.tif").c_str(), is_big_endian ? "wb" : "wl"), TIFFClose);
+                TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, width);
+                TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, height);
+                TIFFSetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+                TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, bits);
+                TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_PALETTE);
+                TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+                TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, 7);
+                TIFFSetField(tiff.get(), TIFFTAG_COLORMAP, map[0].data(), map[1].data(), map[2].data());
+                for (std::uint32_t y = 0; y < height; ++y)
+                    ASSERT_EQ(TIFFWriteScanline(tiff.get(), &packed[row_bytes * y], y), 1);
+            }
+            const auto bytes = read_file(file("a.tif"));
+            ASSERT_TRUE(bytes);
+            const Source ours = open_tiff(*bytes);
+            ASSERT_TRUE(ours && *ours != nullptr) << bits;
+            std::vector<float> read(std::size_t{width} * height * 3);
+            std::vector<SamplePlace> places;
+            for (std::size_t i = 0; i < 3; ++i)
+                places.push_back({.channel = i,
+                                  .kind = SampleKind::Float,
+                                  .first = reinterpret_cast<std::byte*>(read.data() + i),
+                                  .pixel_bytes = 3 * sizeof(float),
+                                  .row_bytes = 3 * sizeof(float) * width});
+            ASSERT_TRUE((*ours)->read_rows(0, 0, height, places));
+            for (std::size_t y = 0, at = 0; y < height; ++y)
+                for (std::size_t x = 0; x < width; ++x)
+                    for (std::size_t i = 0; i < 3; ++i, ++at) {
+                        std::size_t color = 0;
+                        for (std::size_t bit = x * bits; bit < (x + 1) * bits; ++bit)
+                            color = color * 2 + (packed[row_bytes * y + bit / 8] >> (7 - bit % 8) & 1);
+                        ASSERT_EQ(std::lround(read[at] * 65535), map[i][color]) << bits << ' ' << x << ' ' << y;
+                    }
+        }
+}
+
 TEST_F(DecodersTiff, OthersAreLeftToOpenImageIo) {
     for (const TestLayout& layout :
          std::vector<TestLayout>{{.samples = 5}, {.bits = 32}, {.samples = 4}, {.bits = 4}}) {

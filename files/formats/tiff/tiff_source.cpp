@@ -6,6 +6,7 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -107,23 +108,25 @@ class TiffSource final : public AttributedSource {
         if (TIFFGetField(file_.get(), TIFFTAG_PHOTOMETRIC, &meaning) != 1) return false;
         const bool is_integer = format == SAMPLEFORMAT_UINT && (bits == 8 || bits == 16);
         const bool is_real = format == SAMPLEFORMAT_IEEEFP && (bits == 16 || bits == 32);
-        if ((!is_integer && !is_real) || compression == COMPRESSION_JPEG) return false;
+        const bool is_palette = meaning == PHOTOMETRIC_PALETTE && (bits == 1 || bits == 2 || bits == 4 || bits == 8) &&
+                                format == SAMPLEFORMAT_UINT && samples == 1;
+        if ((!is_integer && !is_real && !is_palette) || compression == COMPRESSION_JPEG) return false;
         FilePart part;
         is_negative_ = meaning == PHOTOMETRIC_MINISWHITE;
         if (meaning == PHOTOMETRIC_MINISBLACK || is_negative_) part.channels = {"Y"};
-        if (meaning == PHOTOMETRIC_RGB) part.channels = {"R", "G", "B"};
+        if (meaning == PHOTOMETRIC_RGB || (is_palette && read_palette(bits))) part.channels = {"R", "G", "B"};
         if (part.channels.empty()) return false;
         if (const std::optional<bool> is_associated = alpha(); is_associated && samples == part.channels.size() + 1) {
             part.channels.emplace_back("A");
             part.is_associated = *is_associated;
         }
-        if (samples != part.channels.size()) return false;
-        part.kinds.assign(samples, is_real      ? bits == 16 ? SampleKind::Half : SampleKind::Float
-                                   : bits == 16 ? SampleKind::Integer16
-                                                : SampleKind::Integer8);
+        if (!is_palette && samples != part.channels.size()) return false;
+        part.kinds.assign(part.channels.size(), is_real ? bits == 16 ? SampleKind::Half : SampleKind::Float
+                                                : bits == 16 || is_palette ? SampleKind::Integer16
+                                                                           : SampleKind::Integer8);
         part.width = part.display_width = file_.field<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
         part.height = part.display_height = file_.field<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
-        sample_bytes_ = bits / 8;
+        sample_bytes_ = is_palette ? 2 : bits / 8;
         is_apart_ = samples > 1 && file_.field<std::uint16_t>(TIFFTAG_PLANARCONFIG, 1) == PLANARCONFIG_SEPARATE;
         is_tiled_ = TIFFIsTiled(file_.get()) != 0;
         chunk_width_ = is_tiled_ ? file_.field<std::uint32_t>(TIFFTAG_TILEWIDTH, 0) : part.width;
@@ -150,6 +153,26 @@ class TiffSource final : public AttributedSource {
         if (TIFFGetField(file_.get(), TIFFTAG_EXTRASAMPLES, &count, &what) != 1 || count != 1) return std::nullopt;
         if (what[0] != EXTRASAMPLE_ASSOCALPHA && what[0] != EXTRASAMPLE_UNASSALPHA) return std::nullopt;
         return what[0] == EXTRASAMPLE_ASSOCALPHA;
+    }
+    /// The colours that numbers of so many bits name. False where 8 bits hold each of them, too, as other decoders read
+    /// them.
+    [[nodiscard]] bool read_palette(std::uint16_t bits) {
+        std::array<std::uint16_t*, 3> map{};
+        if (TIFFGetField(file_.get(), TIFFTAG_COLORMAP, &map[0], &map[1], &map[2]) != 1) return false;
+        index_bits_ = bits;
+        palette_.resize(std::size_t{1} << bits);
+        bool is_fine = false, is_wide = false;
+        for (std::size_t color = 0; color < palette_.size(); ++color)
+            for (std::size_t channel = 0; channel < map.size(); ++channel) {
+                const std::uint16_t value = palette_[color][channel] = map[channel][color];
+                is_fine = is_fine || value % 257 != 0;
+                is_wide = is_wide || value > 255;  // some programs write numbers of 8 bits
+            }
+        return is_fine && is_wide;
+    }
+    [[nodiscard]] std::size_t index(const std::byte* row, std::size_t x) const {
+        const std::size_t bit = x * index_bits_;
+        return std::to_integer<std::size_t>(row[bit / 8]) >> (8 - index_bits_ - bit % 8) & (palette_.size() - 1);
     }
     /// Of a picture whose 0 is white: grey, and alpha as it is.
     void turn_around() {
@@ -180,7 +203,9 @@ class TiffSource final : public AttributedSource {
         const std::size_t pixel = is_apart_ ? sample_bytes_ : pixel_bytes();
         const std::size_t planes = is_apart_ ? parts_[0].channels.size() : 1;
         band_.resize(pixel_bytes() * width * rows);
-        chunk_.resize(pixel * chunk_width_ * (is_tiled_ ? chunk_height_ : rows));
+        const std::size_t chunk_row =
+            palette_.empty() ? pixel * chunk_width_ : (std::size_t{chunk_width_} * index_bits_ + 7) / 8;
+        chunk_.resize(chunk_row * (is_tiled_ ? chunk_height_ : rows));
         for (std::size_t plane = 0; plane < planes; ++plane)
             for (std::uint32_t x = 0; x < width; x += chunk_width_) {
                 const auto sample = static_cast<std::uint16_t>(plane);
@@ -192,10 +217,13 @@ class TiffSource final : public AttributedSource {
                                                      chunk_.data(), size);
                 if (read != size) return false;
                 for (std::uint32_t y = 0; y < rows; ++y) {
-                    const std::byte* from = chunk_.data() + pixel * chunk_width_ * y;
+                    const std::byte* from = chunk_.data() + chunk_row * y;
                     std::byte* to = band_.data() + pixel_bytes() * (std::size_t{width} * y + x) + plane * sample_bytes_;
                     const std::uint32_t count = std::min(chunk_width_, width - x);
-                    if (!is_apart_)
+                    if (!palette_.empty())
+                        for (std::uint32_t i = 0; i < count; ++i, to += pixel_bytes())
+                            std::memcpy(to, &palette_[index(from, i)], pixel_bytes());
+                    else if (!is_apart_)
                         std::memcpy(to, from, pixel * count);
                     else
                         for (std::uint32_t i = 0; i < count; ++i, from += pixel, to += pixel_bytes())
@@ -249,6 +277,8 @@ class TiffSource final : public AttributedSource {
     std::uint32_t chunk_width_ = 1, chunk_height_ = 1;
     std::uint32_t band_number_ = 0;  ///< one more than that which `band_` holds
     std::vector<std::byte> band_, chunk_;
+    std::vector<std::array<std::uint16_t, 3>> palette_;  ///< empty: samples are of the picture itself
+    std::size_t index_bits_ = 8;
 };
 
 }  // namespace
