@@ -141,6 +141,8 @@ TEST(Look, UnknownKeysAreWarnedOfAndStrictlyRefused) {
     EXPECT_TRUE(contains(error_of(text, true), "not_a_section"));
     EXPECT_EQ(error_of("bloom_threshold = 2\n", true),
               "a.toml:1:1: unknown key 'bloom_threshold': it belongs below [post_process]");
+    EXPECT_EQ(error_of("order = \"scene_linear\"\n", true),
+              "a.toml:1:1: unknown key 'order': it belongs below [post_process]");
     EXPECT_EQ(error_of("tonemap = \"agx\"\n", true),
               "a.toml:1:1: unknown key 'tonemap', did you mean 'tonemap_curve' below [post_process]?");
     EXPECT_TRUE(

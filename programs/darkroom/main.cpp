@@ -21,7 +21,7 @@ namespace {
 int start(const char* name, std::span<char* const> arguments) {
     const std::string program = darkroom::program_module(name).string();
     const int reason = darkroom::become(program, arguments);
-    app::complain(fmt::format("{} {}: {}; `cmake --build BUILD --target {}` builds it, and ./darkroom does, too",
+    app::complain(fmt::format("{} {}: {}; `cmake --build BUILD --target {}` builds it, to be installed again, and ./darkroom does, too",
                               arguments[1], darkroom::printable(program), std::strerror(reason), name));
     return app::exit_machine;
 }

@@ -343,7 +343,7 @@ TEST_F(FarmFiles, StatusIsToldFromRecordsAndPictures) {
               "  failed: 12, 14 on n1, 4 tries: darkroom: frame: is empty\n"
               "  begun: 16-20 on n1 at 2026-01-02T03:04:05Z, not ended\n"
               "  missing: 16-24\n"
-              "  1.50 s a picture, of 6 that took tasks 9.0 s\n");
+              "  6 pictures in 9.0 s of task time, 1.50 s each\n");
     const auto told = nlohmann::json::parse(farm("status out/shot.farm/ --json").out);
     EXPECT_EQ(told["failed"], nlohmann::json::parse("[[12,12],[14,14]]"));
     EXPECT_EQ(told["missing"], nlohmann::json::parse("[[16,24]]"));

@@ -30,7 +30,7 @@ Result<Look> LookReader::read(const toml::table& file) {
 /// What an unknown key at the top was meant to be: one of the flat table, or misspelt.
 static std::string meant_at_top(const std::string& key, std::span<const std::string> names) {
     Look look = default_look();
-    if (find_target(look, key, {})) return ": it belongs below [post_process]";
+    if (key == "order" || key == "enabled" || find_target(look, key, {})) return ": it belongs below [post_process]";
     std::string near = suggestion(key, names);
     if (!near.empty()) return near;
     std::vector<std::string> flat;

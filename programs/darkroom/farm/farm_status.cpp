@@ -115,8 +115,8 @@ void print(const Status& status) {
     }
     if (!status.missing.empty()) answer(fmt::format("  missing: {}", shown(status.missing)));
     if (made > 0)
-        answer(fmt::format("  {:.2f} s a picture, of {} that took tasks {:.1f} s", seconds / static_cast<double>(made),
-                           made, seconds));
+        answer(fmt::format("  {} picture{} in {:.1f} s of task time, {:.2f} s each", made, made == 1 ? "" : "s",
+                           seconds, seconds / static_cast<double>(made)));
 }
 
 /// The folder itself, or all those in it.

@@ -96,7 +96,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
         for (const darkroom::NumberedFile& input : inputs)
             if (std::error_code error; !fs::exists(input.path, error))
                 return user_error(fmt::format("{}: there is no such file", printable(input.path.string())));
-        return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
+        return user_error(fmt::format("-o {}: {} inputs need a folder (a new one ends in /), or a name with %04d, #### or {{name}}",
                                       printable(out), inputs.size()));
     }
     std::vector<fs::path> outputs;
