@@ -85,6 +85,9 @@ TEST_F(CliFlags, AFlagIsNoValueOfTheOneBefore) {
                                              {"--bloom", "0.2", "--bloom-intensity 0.2"}})
         expect_refused({"develop", "a.exr", flag, value, "-o", "a.png"}, 1,
                        fmt::format("darkroom: {}: takes no value, did you mean '{}'?\n", flag, meant));
+    // Files behind a switch are files, as far as there are some.
+    for (const char* const input : {"none.exr", "none.$F4.exr"})
+        expect_refused({"develop", "--bloom", input, "-o", "a.png"}, 1, "darkroom: none");
     expect_refused({"develop", "a.exr"}, 1, "darkroom: develop: -o OUT is needed: The picture: ");
     expect_refused({"develop"}, 1, "darkroom: develop: INPUT is needed: Frames or pictures");
     expect_refused({"develop", "a.exr", "--exposre", "2"}, 1, "did you mean '--exposure'?\n");

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -113,20 +114,22 @@ std::string flag_for_value(const CLI::App& command) {
     return {};
 }
 
-// "--vignette 0.5": a switch takes no value, and what stands behind it was taken for a file. Empty: nothing of the
-// kind.
+// "--vignette 0.5", "--tonemap agx": a switch takes no value, and what stands behind it was taken for a file. Empty:
+// nothing of the kind.
 std::string value_of_switch(const CLI::App& command, std::span<char* const> arguments) {
     std::error_code error;
     for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
         const std::string flag = arguments[i], value = arguments[i + 1];
         const CLI::Option* const option = flag.starts_with("--") ? command.get_option_no_throw(flag) : nullptr;
-        if (option == nullptr || option->get_expected_max() != 0 || value.starts_with('-')) continue;
-        if (value.find_first_of("*?#%") != std::string::npos || std::filesystem::exists(value, error)) continue;
-        const std::vector<std::string> known = known_names(command);
-        for (const std::string_view amount : {"-intensity", "-amount", "-strength", "-curve", ""})
-            for (const std::string& name : known)
-                if (amount.empty() ? name.starts_with(flag + "-") : name == flag + std::string(amount))
-                    return fmt::format("{}: takes no value, did you mean '{} {}'?", flag, name, printable(value));
+        if (option == nullptr || option->get_expected_max() != 0 || std::filesystem::exists(value, error)) continue;
+        const bool is_number = darkroom::parse_number(value).has_value();
+        if (!is_number && !std::ranges::all_of(value, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; }))
+            continue;
+        for (const std::string_view meant : {"-intensity", "-amount", "-strength", "-curve"}) {
+            const std::string name = flag + std::string(meant);
+            if (is_number != (meant == "-curve") && command.get_option_no_throw(name) != nullptr)
+                return fmt::format("{}: takes no value, did you mean '{} {}'?", flag, name, value);
+        }
     }
     return {};
 }
