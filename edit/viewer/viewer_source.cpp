@@ -110,7 +110,7 @@ void Viewer::open_subject(const std::filesystem::path& file) {
     }
     reading_since_ = darkroom::edit::Watch::Clock::now();
     tell(fmt::format("reading {}", darkroom::printable(file.filename().string())));
-    const bool is_scene = file.extension() == ".toml" || darkroom::scene::is_model_path(file);
+    const bool is_scene = darkroom::scene::is_scene_path(file);
     opening_ = start_beside([this, file, is_scene, scene = job_.scene_desc, frame = job_.frame_desc] {
         return caught(file, [&]() -> Result<Opened> {
             Opened out{.file = file};

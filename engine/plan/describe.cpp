@@ -39,17 +39,17 @@ std::string accepted_domains(Domains accepts) {
 
 /// About colour domains, with the present values.
 void remark_domains(const Program& program, const FrameValues& values, const CompileDesc& desc,
-                    std::span<const Entry* const> entries, std::vector<std::string>& remarks) {
+                    std::span<const Entry* const> entries, Plan& plan) {
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Domain domain = values.state_before(program, i).domain;
         const EffectInfo& info = *entries[i]->info;
         const Domains accepts = info.accepts_now == nullptr ? info.accepts : info.accepts_now(values.words(i));
         if (program.is_left_out[i] || !entries[i]->desc.enabled || accepts.contains(domain)) continue;
-        remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
-                                      accepted_domains(accepts), name_of(domain)));
+        plan.misplaced.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
+                                             accepted_domains(accepts), name_of(domain)));
     }
     if (!desc.target_color && values.finish().kind == Finish::EncodeSrgb)
-        remarks.push_back(fmt::format(
+        plan.remarks.push_back(fmt::format(
             "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
             name_of(values.last_state(program).domain)));
 }
@@ -193,7 +193,7 @@ Plan describe_frame(const Program& program, const graph::Compiled& compiled, con
         if (!program.is_left_out[i] && values.lacks_perspective(*entries[i]->info))
             plan.left_out.push_back(fmt::format("{}: {}", entries[i]->desc.name, lacks_perspective_reason));
     const graph::Extents largest = largest_extents(desc);
-    remark_domains(program, values, desc, entries, plan.remarks);
+    remark_domains(program, values, desc, entries, plan);
     if (desc.target_color) remark_target(program, values, *desc.target_color, entries, plan.remarks);
     for (std::uint32_t i = 0; i < entries.size(); ++i)
         if (!program.is_left_out[i]) plan.states.push_back({entries[i]->desc.name, text_of(values.state_after(i))});

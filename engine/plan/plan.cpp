@@ -144,6 +144,7 @@ std::string Plan::text() const {
     if (!states.empty()) out += "colour:\n";
     for (const PlanState& state : states) out += fmt::format("     {}: {}\n", state.entry, state.state);
     for (const std::string& text : left_out) out += fmt::format("left out: {}\n", text);
+    for (const std::string& text : misplaced) out += fmt::format("misplaced: {}\n", text);
     for (const std::string& text : remarks) out += fmt::format("remark: {}\n", text);
     return out;
 }
@@ -152,9 +153,10 @@ std::string Plan::json() const {
     return fmt::format(
         "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"images\": [{}\n  ],\n  "
         "\"bytes_read\": {}, \"bytes_written\": {},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  "
-        "\"states\": [{}\n  ],\n  \"left_out\": {},\n  \"remarks\": {},\n  \"frame_images\": {}\n}}\n",
+        "\"states\": [{}\n  ],\n  \"left_out\": {},\n  \"misplaced\": {},\n  \"remarks\": {},\n  \"frame_images\": "
+        "{}\n}}\n",
         extent.width, extent.height, passes.size(), lines_of(passes), lines_of(images), bytes_read(), bytes_written(),
-        transient_bytes, transient_bytes_unaliased, lines_of(states), list(left_out), list(remarks),
+        transient_bytes, transient_bytes_unaliased, lines_of(states), list(left_out), list(misplaced), list(remarks),
         list(frame_images));
 }
 

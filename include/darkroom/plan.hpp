@@ -68,8 +68,9 @@ struct Plan {
     /// "ssao: needs depth, which the frame does not have"; of Composer::current_plan(), what its frame alone left out,
     /// too
     std::vector<std::string> left_out;
-    std::vector<std::string> remarks;  ///< colour domains and other oddities, one sentence each
-    std::vector<PlanState> states;     ///< behind each entry that is not left out, in order
+    std::vector<std::string> misplaced;  ///< entries that expect a picture in another colour domain, one sentence each
+    std::vector<std::string> remarks;    ///< other oddities, likewise
+    std::vector<PlanState> states;       ///< behind each entry that is not left out, in order
     /// Of the frame, what any pass may read: "color", "depth" and so on, as needs name them.
     std::vector<std::string> frame_images;
     std::uint64_t transient_bytes = 0;  ///< after aliasing

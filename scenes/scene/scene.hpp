@@ -192,6 +192,8 @@ struct SceneOptions {
                                         const SceneOptions& options = {});
 /// Whether the name is that of a model (.glb, .gltf, in any case).
 [[nodiscard]] bool is_model_path(const std::filesystem::path& path);
+/// The name of a scene or of a model.
+[[nodiscard]] bool is_scene_path(const std::filesystem::path& path);
 /// A .toml file as above; a .glb or .gltf file becomes a scene of that one model, without camera and without grid.
 [[nodiscard]] Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 

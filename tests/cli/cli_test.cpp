@@ -107,6 +107,49 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
     expect_refused({"develop", path("shot.0007.exr"), path("frame.exr"), "-o", path("one.png")}, 1, "2 inputs need");
     expect_refused({"develop", path("frame.exr"), path("frame.exr"), "-o", path("{name}.png")}, 1,
                    "two inputs would be written to it");
+    // Of a sequence, those that are asked for count.
+    const std::string sequence = path("shot.%04d.exr");
+    EXPECT_EQ(run({"develop", sequence, "--frames", "9", "-o", path("nine.png")}).code, 0);
+    EXPECT_TRUE(fs::exists(path("nine.png")));
+    expect_refused({"develop", sequence, "-o", path("new")}, 1, "2 inputs need a folder (--mkdir makes a new one)");
+    EXPECT_EQ(run({"develop", sequence, "--mkdir", "-o", path("new")}).code, 0);
+    EXPECT_TRUE(fs::exists(path("new/shot.0007.png")));
+    write("box.scene.toml", "");
+    expect_refused({"develop", path("box.scene.toml"), "-o", path("one.png")}, 1,
+                   "box.scene.toml: a scene or a model is drawn by `darkroom render`\n");
+}
+
+TEST_F(Cli, WhatChangesNothingOrStandsInAWrongPlaceIsTold) {
+    const auto told = [&](const std::vector<std::string>& flags) {
+        const Outcome outcome = develop(flags, "out.png");
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.err;
+    };
+    const auto idle = [](const std::string& value, const std::string& entry) {
+        return fmt::format("darkroom: warning: {} changes nothing: {} is off; --set {}.enabled=true switches it on\n",
+                           value, entry, entry);
+    };
+    EXPECT_EQ(told({"--lens-flare-ghosts", "3", "--lens-flare-halo", "0.1"}),
+              idle("--lens-flare-ghosts", "lens_flare"));
+    EXPECT_EQ(told({"--set", "lens_flare.ghosts=3"}), idle("--set lens_flare.ghosts", "lens_flare"));
+    EXPECT_EQ(told({"--lens-flare-ghosts", "3", "--lens-flare"}), "");
+    EXPECT_EQ(told({"--lens-flare-ghosts", "3", "--no-lens-flare"}), "") << "who says so knows it";
+    write("my.toml", "[post_process]\norder = \"scene_linear\"\nlens_flare_ghosts = 3\n");
+    const std::vector<std::string> look{"--look", path("my.toml")};
+    EXPECT_EQ(told(look), idle(path("my.toml") + ": lens_flare_ghosts", "lens_flare"));
+    EXPECT_EQ(told({"--look", path("my.toml"), "--lens-flare"}), "");
+    write("off.toml",
+          "[post_process]\norder = \"scene_linear\"\nvignette_smoothness = 0.3\nvignette_enabled = false\n");
+    EXPECT_EQ(told({"--look", path("off.toml")}), "");
+    EXPECT_EQ(told({"--look", path("off.toml"), "--vignette-smoothness", "0.4"}),
+              idle("--vignette-smoothness", "vignette"));
+    write("order.toml",
+          "[[stack]]\neffect = \"tonemap\"\n[[stack]]\neffect = \"color_grade\"\n"
+          "[[stack]]\neffect = \"encode\"\n");
+    EXPECT_NE(
+        told({"--look", path("order.toml")})
+            .find("darkroom: warning: color_grade expects a picture that is scene_linear; this one is display_linear."),
+        std::string::npos);
 }
 
 TEST_F(Cli, HelpIsWhatItPrintsWithoutACommandToo) {

@@ -25,15 +25,24 @@ class CliNew : public test::CliFixture {
         ASSERT_TRUE(write_frame(path("frame.exr"), frame));
     }
     /// Nothing is warned of either.
-    void expect_clean(const std::string& line) const {
+    void expect_clean(const std::string& line) {
         const Outcome outcome = run_lines(line);
         EXPECT_EQ(outcome.code, 0) << line << "\n" << outcome.err;
         EXPECT_EQ(outcome.err, "") << line;
+        told_ = outcome.told;
     }
+    /// The command that the last one told of.
+    void expect_clean_next() {
+        expect_clean(told_.substr(told_.find("darkroom "), told_.find('\n') - told_.find("darkroom ")));
+    }
+
+  private:
+    std::string told_;
 };
 
 TEST_F(CliNew, AnEffectDoesWhatItSays) {
     expect_clean("darkroom new effect cold_shadows");
+    expect_clean_next();
     expect_clean("darkroom effects cold_shadows.glsl");
     expect_clean("darkroom develop frame.exr -o plain.png");
     expect_clean("darkroom develop frame.exr --effect cold_shadows.glsl -o tinted.png");
@@ -49,6 +58,7 @@ TEST_F(CliNew, AnEffectDoesWhatItSays) {
 
 TEST_F(CliNew, ALookIsReadStrictly) {
     expect_clean("darkroom new look evening");
+    expect_clean_next();
     expect_clean("darkroom develop frame.exr --look evening.toml --strict -o picture.png");
     expect_clean("darkroom info evening.toml");
     expect_clean("darkroom plan evening.toml --strict");
@@ -57,6 +67,7 @@ TEST_F(CliNew, ALookIsReadStrictly) {
 
 TEST_F(CliNew, ASceneIsRenderedStrictly) {
     expect_clean("darkroom new scene room");
+    expect_clean_next();
     expect_clean("darkroom render room.scene.toml --strict --size 64x36 -o picture.png");
     expect_clean("darkroom info room.scene.toml");
     const Picture made = picture("picture.png");

@@ -409,6 +409,7 @@ void draw_plan_panel(const Plan* plan, bool is_compiling) {
         ImGui::EndTable();
     }
     draw_sentences("Left out", plan->left_out);
+    draw_sentences("Misplaced", plan->misplaced);
     draw_sentences("Remarks", plan->remarks);
 }
 

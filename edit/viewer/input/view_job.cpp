@@ -25,8 +25,6 @@ using darkroom::window::Presentation;
 
 namespace {
 
-bool is_scene(const std::string& input) { return input.ends_with(".toml") || darkroom::scene::is_model_path(input); }
-
 /// Is it a look, and no scene that may have one? What cannot be read is said by who reads it.
 bool is_look(const std::string& input) {
     if (!input.ends_with(".toml")) return false;
@@ -67,7 +65,7 @@ Result<Named> named_by(const ViewFlags& flags) {
 }
 
 Result<> read_subject(ViewerJob& job, const ViewFlags& flags, const std::vector<std::string>& inputs) {
-    const bool has_scene = std::ranges::any_of(inputs, is_scene);
+    const bool has_scene = std::ranges::any_of(inputs, darkroom::scene::is_scene_path);
     if (has_scene && inputs.size() > 1)
         return user_error(fmt::format("{}: one scene or model at a time", printable(inputs[1])));
     DARKROOM_TRY_VALUE(const darkroom::render::RenderDesc desc, flags.drawn.desc());

@@ -29,6 +29,7 @@
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "programs/darkroom/run/sequence_run.hpp"
+#include "scene/scene.hpp"
 
 namespace app {
 
@@ -262,6 +263,10 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     if (options.frame.eyes().size() > 1 && job.out == options.out)
         return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
     DARKROOM_TRY(options.run.start_report());
+    for (const std::string& input : options.inputs)
+        if (darkroom::scene::is_scene_path(input))
+            return user_error(fmt::format("{}: a scene or a model is drawn by `darkroom render`",
+                                          darkroom::printable(input)));
     if (options.keeps_layers && options.frame.keeps_overscan)
         return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
     if (options.frame.keeps_overscan && (!options.size.empty() || !options.output_size.empty()))
@@ -442,6 +447,7 @@ class Develop {
         if (job_.brighter) DARKROOM_TRY(develop_brighter(i));
         DARKROOM_TRY(developer_->submit(*composer_, item.input));
         tell_of_what_is_left_out(i, composer_->current_plan()->left_out);
+        if (i == 0) warn_of_what_is_misplaced(*composer_->current_plan());
         if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
         return {};
     }

@@ -80,9 +80,7 @@ void FarmFlags::add_to(CommandFlags command, const std::string& frames_doc) {
                      "Lets the look name files of effects, which are code, and --effect bring some");
 }
 
-bool FarmFlags::is_scene() const {
-    return fs::path(input_).extension() == ".toml" || darkroom::scene::is_model_path(input_);
-}
+bool FarmFlags::is_scene() const { return darkroom::scene::is_scene_path(input_); }
 
 std::vector<std::string> FarmFlags::command(const std::string& frames) const {
     std::vector<std::string> out{is_scene() ? "render" : "develop", input_, "-o", out_, "--frames", frames};
@@ -117,9 +115,9 @@ Result<> FarmFlags::check_arguments() const {
                         printable(input_)));
     if (is_scene() && frames_.empty()) return user_error(fmt::format("{}: --frames A-B is needed", printable(input_)));
     const bool is_pattern = darkroom::has_number_pattern(out_);
-    if (is_scene() ? !is_pattern : !is_output_folder(out_) && !is_pattern && out_.find("{name}") == std::string::npos)
+    if (is_scene() ? !is_pattern : !is_folder() && !is_pattern && out_.find("{name}") == std::string::npos)
         return user_error(fmt::format("-o {}: expected {}a name with %04d or ####", printable(out_),
-                                      is_scene() ? "" : "a folder, or "));
+                                      is_scene() ? "" : "a folder (--mkdir makes a new one), or "));
     return {};
 }
 
@@ -135,9 +133,8 @@ Result<std::vector<FarmFrame>> FarmFlags::frames_in(const std::optional<darkroom
     }
     DARKROOM_TRY_VALUE(const std::vector<darkroom::NumberedFile> inputs,
                        darkroom::expand_inputs(std::span(&input_, 1)));
-    const bool is_folder = is_output_folder(out_);
     for (const auto& [path, number] : inputs)
-        if (!frames || frames->contains(number)) out.push_back({number, output_path(path, number, out_, is_folder)});
+        if (!frames || frames->contains(number)) out.push_back({number, output_path(path, number, out_, is_folder())});
     if (out.empty())
         return user_error(
             fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs.size()));
@@ -164,9 +161,8 @@ Result<FarmWork> FarmFlags::work() const {
         return user_error(fmt::format("{}: {} frames, a farm takes at most {}; --frames A-B chooses some",
                                       printable(input_), frames.size(), max_frames));
     const fs::path picture = frames.front().picture, folder = picture.parent_path();
-    const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
-    DARKROOM_TRY(check_folder(folder, missing));
-    FarmNames names{.input = input_, .output = out_, .is_folder = is_output_folder(out_)};
+    DARKROOM_TRY(check_folder(folder, missing_folders()));
+    FarmNames names{.input = input_, .output = out_, .is_folder = is_folder()};
     const fs::path records = farm_folder(names.pictures(0).front(), names.pictures(9).front());
     return FarmWork{.frames = std::move(frames),
                     .names = std::move(names),

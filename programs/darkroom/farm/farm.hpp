@@ -61,6 +61,11 @@ class FarmFlags {
 
     std::string input_, out_, look_, frames_;
     std::vector<std::string> more_;
+    [[nodiscard]] MissingFolders missing_folders() const {
+        return makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
+    }
+    [[nodiscard]] bool is_folder() const { return is_output_folder(out_, missing_folders()); }
+
     bool allows_custom_effects_ = false, makes_folder_ = false;
 };
 

@@ -16,6 +16,7 @@
 #include "programs/darkroom/run/outputs.hpp"
 #include "programs/darkroom/run/report.hpp"
 #include "programs/darkroom/run/shell_text.hpp"
+#include "programs/darkroom/run/shipped.hpp"
 
 namespace app {
 
@@ -118,9 +119,9 @@ struct Kind {
     std::string_view next;  ///< what one does with it
 };
 constexpr std::array kinds{
-    Kind{"effect", ".glsl", effect_text, "darkroom develop frame.exr --effect {} -o picture.png"},
-    Kind{"look", ".toml", look_text, "darkroom develop frame.exr --look {} -o picture.png"},
-    Kind{"scene", ".scene.toml", scene_text, "darkroom render {} -o picture.png"}};
+    Kind{"effect", ".glsl", effect_text, "darkroom develop {frame} --effect {file} -o picture.png"},
+    Kind{"look", ".toml", look_text, "darkroom develop {frame} --look {file} -o picture.png"},
+    Kind{"scene", ".scene.toml", scene_text, "darkroom render {file} -o picture.png"}};
 
 std::string pascal(std::string_view name) {
     std::string out;
@@ -172,7 +173,12 @@ Result<> make(const Options& options) {
     if (std::filesystem::exists(file, error) && !options.is_forced)
         return user_error(fmt::format("{}: exists already; --force replaces it", printable(file)));
     DARKROOM_TRY(darkroom::write_file(file, std::as_bytes(std::span(text))));
-    tell(fmt::format("{}: {}", printable(file), fmt::format(fmt::runtime(kind->next), shell_quoted(printable(file)))));
+    const std::filesystem::path sample = shipped_file("samples/window.exr");
+    const std::string frame =
+        sample.empty() ? "frame.exr" : sample.lexically_proximate(std::filesystem::current_path());
+    tell(fmt::format("{}: {}", printable(file),
+                     fmt::format(fmt::runtime(kind->next), fmt::arg("frame", shell_quoted(printable(frame))),
+                                 fmt::arg("file", shell_quoted(printable(file))))));
     return {};
 }
 

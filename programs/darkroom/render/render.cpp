@@ -633,6 +633,7 @@ class Render {
             DARKROOM_TRY_VALUE(DevelopedPicture made,
                                developer_->develop(*composer_, input, has_frame ? &layers : nullptr));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, composer_->current_plan()->left_out);
+            if (i == 0) warn_of_what_is_misplaced(*composer_->current_plan());
             if (i == 0) tell_of_dim_bloom(*device_, *composer_, look_, develop_, input);
             item.picture = std::move(made);
             if (flags_.run.has_timings) pass_times_.add(composer_->times().passes);

@@ -272,6 +272,10 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
     return told;
 }
 
+void warn_of_what_is_misplaced(const darkroom::Plan& plan) {
+    for (const std::string& text : plan.misplaced) warn(text);
+}
+
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,
                                               const darkroom::DevelopDesc& desc,
                                               darkroom::ReferenceHistories& histories,

@@ -47,6 +47,8 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame = {});
+/// A warning for each entry that stands where the picture is in another colour domain than it expects.
+void warn_of_what_is_misplaced(const darkroom::Plan& plan);
 /// By the CPU references alone, in the form that the target asks for. `histories`: of the frame before, then of this
 /// one. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,

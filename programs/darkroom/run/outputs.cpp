@@ -70,9 +70,15 @@ Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFold
     return {};
 }
 
-bool is_output_folder(const std::string& out) {
+bool is_output_pattern(const std::string& out) {
+    return darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
+}
+
+bool is_output_folder(const std::string& out, MissingFolders missing) {
     std::error_code error;
-    return fs::is_directory(out, error) || out.ends_with('/');
+    if (out.ends_with('/') || fs::is_directory(out, error)) return true;
+    return missing == MissingFolders::Made && !is_output_pattern(out) && !fs::path(out).has_extension() &&
+           !fs::exists(out, error);
 }
 
 fs::path output_path(const fs::path& input, long long number, const std::string& out, bool is_folder) {
@@ -88,16 +94,18 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
                                            std::span<const fs::path> also_read,
                                            const std::function<bool(long long)>& is_asked_for, MissingFolders folders) {
     if (out.empty()) return user_error("-o: an output file is needed");
-    const bool is_folder = is_output_folder(out);
-    const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
+    const bool is_folder = is_output_folder(out, folders);
     if (is_folder) DARKROOM_TRY(check_folder(out, folders));
-    if (inputs.size() > 1 && !is_folder && !has_name) {
+    const auto asked_for =
+        std::ranges::count_if(inputs, [&](const darkroom::NumberedFile& input) { return is_asked_for(input.number); });
+    if (asked_for > 1 && !is_folder && !is_output_pattern(out)) {
         // Such as a value behind a flag that takes none: --vignette 0.5.
         for (const darkroom::NumberedFile& input : inputs)
             if (std::error_code error; !fs::exists(input.path, error))
                 return user_error(fmt::format("{}: there is no such file", printable(input.path.string())));
-        return user_error(fmt::format("-o {}: {} inputs need a folder (a new one ends in /), or a name with %04d, #### or {{name}}",
-                                      printable(out), inputs.size()));
+        return user_error(fmt::format(
+            "-o {}: {} inputs need a folder (--mkdir makes a new one), or a name with %04d, #### or {{name}}",
+            printable(out), asked_for));
     }
     std::vector<fs::path> outputs;
     std::map<fs::path, fs::path> makers;
@@ -106,11 +114,15 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
     const FileSet files(read);
     for (const auto& [input, number] : inputs) {
         fs::path path = output_path(input, number, out, is_folder);
+        if (!is_asked_for(number)) {
+            outputs.push_back(std::move(path));
+            continue;
+        }
         const auto [maker, is_new] = makers.try_emplace(path, input);
         if (!is_new)
             return user_error(fmt::format("{}: two inputs would be written to it, {} and {}", printable(path.string()),
                                           printable(maker->second.string()), printable(input.string())));
-        if (is_asked_for(number)) DARKROOM_TRY(check_output(path, files, folders));
+        DARKROOM_TRY(check_output(path, files, folders));
         outputs.push_back(std::move(path));
     }
     return outputs;

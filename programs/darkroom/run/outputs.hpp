@@ -50,8 +50,8 @@ enum class MissingFolders {
 [[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs,
                                               MissingFolders folders = MissingFolders::Refused);
 
-/// Does OUT name a folder?
-[[nodiscard]] bool is_output_folder(const std::string& out);
+/// Does OUT name a folder? One that is to be made has no extension.
+[[nodiscard]] bool is_output_folder(const std::string& out, MissingFolders missing);
 /// What an input of this number becomes. Nothing is looked at.
 [[nodiscard]] std::filesystem::path output_path(const std::filesystem::path& input, long long number,
                                                 const std::string& out, bool is_folder);

@@ -35,7 +35,9 @@ std::vector<fs::path> shipped_looks() {
 std::string find_shipped_look(std::string& name) {
     std::error_code error;
     // A flag: that the value is missing is told where all flags are known.
-    if (name.empty() || name.starts_with('-') || name.find_first_of("/.\\") != std::string::npos || fs::exists(name, error)) return {};
+    if (name.empty() || name.starts_with('-') || name.find_first_of("/.\\") != std::string::npos ||
+        fs::exists(name, error))
+        return {};
     if (const fs::path found = shipped_file("looks/" + name + ".toml"); !found.empty()) {
         name = found.string();
         return {};

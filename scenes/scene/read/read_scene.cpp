@@ -300,6 +300,7 @@ bool is_model_path(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
     return extension == ".glb" || extension == ".gltf";
 }
+bool is_scene_path(const std::filesystem::path& path) { return path.extension() == ".toml" || is_model_path(path); }
 
 Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options) {
     const std::string extension = lower(path.extension().string());
