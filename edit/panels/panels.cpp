@@ -168,9 +168,10 @@ void LookPanels::draw_bar() {
     if (bar_button(state, "undo", Icon::Undo, step_text("undo", document.undo_name()), document.can_undo())) undo();
     if (bar_button(state, "redo", Icon::Redo, step_text("redo", document.redo_name()), document.can_redo())) redo();
     const bool can_save = document.is_changed() || document.file().empty();
-    if (bar_button(state, "save", Icon::Save, can_save ? "Saves the look." : "There is nothing to save.", can_save))
+    if (bar_button(state, "save", Icon::Save, can_save ? "Saves the look (Ctrl+S)." : "There is nothing to save.",
+                   can_save))
         save();
-    if (bar_button(state, "save_as", Icon::Folder, "Saves the look under another name.", true)) save_as();
+    if (bar_button(state, "save_as", Icon::SaveAs, "Saves the look under another name.", true)) save_as();
     if (bar_button(state, "revert", Icon::Reset, "Goes back to what the file says.", document.is_changed())) revert();
     ImGui::SameLine();
     const float radius = ImGui::GetFontSize() * 0.2f;
@@ -218,8 +219,12 @@ void LookPanels::save() {
 
 void LookPanels::save_as() {
     PanelState& state = *state_;
+    // Of a scene it is the look alone that goes elsewhere.
+    std::string start = state.document->file().string();
+    constexpr std::string_view of_scene = ".scene.toml";
+    if (start.ends_with(of_scene)) start.replace(start.size() - of_scene.size(), of_scene.size(), ".toml");
     state.files.open({.title = "Save the look as",
-                      .start = state.document->file(),
+                      .start = start,
                       .extensions = look_files,
                       .is_saving = true,
                       .then = [&state](const std::filesystem::path& file) {

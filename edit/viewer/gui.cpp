@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gui.hpp"
 
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
+
+#include <utility>
 
 #include "gpu/device/context.hpp"
 #include "panels/widgets/imgui_versions.hpp"
@@ -40,14 +43,26 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-// Without a queue a key that went down and up since the last frame would never have been pressed.
+// Without a queue a key that went down and up since the last frame would never have been pressed, and its Ctrl would be
+// that of the end of the frame, for the text that was typed then, too: such text is for the next frame.
 void Gui::hold_short_presses() {
     if (darkroom::panels::has_key_queue) return;
     for (const int key : held_)
         if (!window_.is_down(key)) darkroom::panels::set_backend_key(key, false);
     held_.clear();
-    for (const darkroom::window::KeyPress& press : window_.pressed())
+    bool is_shortcut = false;
+    for (const darkroom::window::KeyPress& press : window_.pressed()) {
         if (darkroom::panels::set_backend_key(press.key, true)) held_.push_back(press.key);
+        is_shortcut |= (press.modifiers & GLFW_MOD_CONTROL) != 0;
+    }
+    darkroom::panels::send_control(is_shortcut || window_.is_down(GLFW_KEY_LEFT_CONTROL) ||
+                                   window_.is_down(GLFW_KEY_RIGHT_CONTROL));
+    ImVector<ImWchar>& typed = ImGui::GetIO().InputQueueCharacters;
+    std::vector<unsigned> now = std::exchange(later_, {});
+    std::vector<unsigned>& these = is_shortcut ? later_ : now;
+    these.insert(these.end(), typed.begin(), typed.end());
+    typed.resize(0);
+    for (const unsigned character : now) ImGui::GetIO().AddInputCharacter(character);
 }
 
 Result<> Gui::begin(float scale) {

@@ -44,7 +44,8 @@ class Gui {
 
     darkroom::gpu::Context& context_;
     darkroom::window::Window& window_;
-    std::vector<int> held_;  ///< keys that went down and up within a frame
+    std::vector<int> held_;        ///< keys that went down and up within a frame
+    std::vector<unsigned> later_;  ///< characters that were typed beside a shortcut
     std::optional<darkroom::window::GuiPass> pass_;
     struct Changed {
         std::uint64_t frame = 0;

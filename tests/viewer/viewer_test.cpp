@@ -304,6 +304,22 @@ TEST_F(CliViewer, TheConsoleHasItsKeys) {
     leave();
 }
 
+// All of it within one frame: the viewer stands while it is typed.
+TEST_F(CliViewer, WhatIsTypedBesideAShortcutIsNotLost) {
+    write_grey_frame();
+    start({"edit", path("frame.exr"), "--size", "1280x720"});
+    press("grave", "console: on");
+    ASSERT_EQ(shell("xdotool type another"), 0);
+    ASSERT_EQ(shell("xdotool sleep 1"), 0);
+    kill(viewer().id(), SIGSTOP);
+    ASSERT_EQ(shell("xdotool key ctrl+a type 'exposure.exposure 2'"), 0);
+    kill(viewer().id(), SIGCONT);
+    ASSERT_EQ(shell("xdotool sleep 1 key Return sleep 1"), 0);
+    press("grave", "console: off");
+    press("ctrl+z", "undo: exposure.exposure 2");
+    leave();
+}
+
 // Frames follow each other without a rest: the mouse comes down on the panels before one has seen it there.
 TEST_F(CliViewer, ADragThatBeginsOnThePanelsMovesNoCamera) {
     start({"edit", scenes_folder + "dungeon.scene.toml", "--size", "1280x720", "--full-size"});

@@ -84,8 +84,11 @@ void draw(Pen& pen, Icon icon) {
             pen.box({5.5f, 9}, {10.5f, 13});
             pen.line({{6, 3}, {6, 6}, {10, 6}, {10, 3}});
             break;
-        case Icon::Folder:
-            pen.line({{2.5f, 12.5f}, {2.5f, 4}, {6.5f, 4}, {8, 5.5f}, {13.5f, 5.5f}, {13.5f, 12.5f}}, true);
+        case Icon::SaveAs:
+            pen.line({{7.5f, 12}, {2.5f, 12}, {2.5f, 3}, {9, 3}, {11, 5}, {11, 7.5f}});
+            pen.line({{5, 3}, {5, 6}, {8.5f, 6}, {8.5f, 3}});
+            pen.line({{11.5f, 9.5f}, {11.5f, 14.5f}});
+            pen.line({{9, 12}, {14, 12}});
             break;
         case Icon::Reset:
             pen.arc({8, 8.5f}, 4.5f, -0.9f * pi + 0.6f, 0.75f * pi);

@@ -6,7 +6,7 @@
 
 namespace darkroom::panels {
 
-enum class Icon : std::uint8_t { Shown, Hidden, Duplicate, Remove, Undo, Redo, Save, Folder, Reset, Up };
+enum class Icon : std::uint8_t { Shown, Hidden, Duplicate, Remove, Undo, Redo, Save, SaveAs, Reset, Up };
 
 /// A square button as high as a frame, without a background until the mouse is over it. `tooltip` may be null.
 bool icon_button(const char* id, Icon icon, const char* tooltip, bool is_dim = false);
