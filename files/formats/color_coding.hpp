@@ -19,7 +19,7 @@ struct TransferCurve {
         Srgb,   ///< IEC 61966-2-1
         Power,  ///< light to the power of 1 / exponent
         Pq,     ///< SMPTE ST 2084, 1 being 203 cd/m2 (ITU-R BT.2408-7)
-        Hlg,    ///< ITU-R BT.2100-2, 1 being what becomes 0.75 (ITU-R BT.2408-7)
+        Hlg,    ///< ITU-R BT.2100-2, a camera's light, 1 being what becomes 0.75 (ITU-R BT.2408-7)
     };
     Kind kind = Kind::Linear;
     double exponent = 1;

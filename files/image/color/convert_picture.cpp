@@ -30,14 +30,31 @@ void decode_codes(Picture& color, float last_code, const TransferCurve& curve) {
     }
 }
 
+// ITU-R BT.2100-2, table 5: what a display of 1000 cd/m2 shows of a camera's light. That is 1 at the code 0.75 here,
+// and the display's at 203 cd/m2.
+void show_hlg(Picture& color) {
+    constexpr double system_gamma = 1.2, camera_white = 0.26496256;
+    const double white = 1000.0 / 203 * std::pow(camera_white, system_gamma);
+    for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
+        float* const pixel = &color.pixels[i];
+        const double luminance = 0.2627 * double{pixel[0]} + 0.6780 * double{pixel[1]} + 0.0593 * double{pixel[2]};
+        const double gain = white * std::pow(std::max(luminance, 0.0), system_gamma - 1);
+        for (std::size_t c = 0; c < 3; ++c)
+            pixel[c] = static_cast<float>(std::clamp(gain * double{pixel[c]}, -largest, largest));
+    }
+}
+
 }  // namespace
 
 void decode(Picture& color, SampleKind samples, const TransferCurve& curve) {
-    if (samples == SampleKind::Integer8) return decode_codes(color, 255, curve);
-    if (samples == SampleKind::Integer16) return decode_codes(color, 65535, curve);
-    if (curve.is_linear()) return;
-    for (std::size_t i = 0; i < color.pixels.size(); ++i)
-        if (i % 4 != 3) color.pixels[i] = decoded_value(curve, color.pixels[i]);
+    if (samples == SampleKind::Integer8)
+        decode_codes(color, 255, curve);
+    else if (samples == SampleKind::Integer16)
+        decode_codes(color, 65535, curve);
+    else if (!curve.is_linear())
+        for (std::size_t i = 0; i < color.pixels.size(); ++i)
+            if (i % 4 != 3) color.pixels[i] = decoded_value(curve, color.pixels[i]);
+    if (curve.kind == TransferCurve::Kind::Hlg) show_hlg(color);
 }
 
 void convert(Picture& color, const ColorMatrix& matrix) {

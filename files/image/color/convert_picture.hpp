@@ -9,7 +9,7 @@
 
 namespace darkroom {
 
-/// `samples`: of the file; its integers are in 0..1 here.
+/// `samples`: of the file; its integers are in 0..1 here. HLG becomes what a display of 1000 cd/m2 shows.
 void decode(Picture& color, SampleKind samples, const TransferCurve& curve);
 
 /// Pixels that are not finite stay as they are.
