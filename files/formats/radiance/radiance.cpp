@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Radiance HDR (Ward 1991, Real Pixels; the file filefmts.pdf of Radiance): lines of text, an empty one, the order of
 // the axes, and pixels of three mantissas and an exponent, packed by runs. A mantissa m stands for what became m when
-// it was cut to a whole number, so it is read as (m + 0.5) / 256, as Radiance, libvips and Blender read it; OpenImageIO
-// and OpenCV have m / 256, half a step less.
+// it was cut to a whole number, so it is read as (m + 0.5) / 256, as Radiance and libvips read it; OpenImageIO,
+// OpenCV and Blender 5.0 have m / 256, half a step less.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -190,9 +190,9 @@ class ImageFormats : public WithFolder {
             "it, which alone keep light where alpha is 0. From and to: the numbers that the file holds, others are "
             "clamped.\n"
             "Bits: of a code, or of a float's size, that are right in smooth colours. Spaces: `--output-space`.\n"
-            "A mantissa m of Radiance HDR is (m + 0.5) / 256, as Radiance, libvips and Blender have it; OpenImageIO "
-            "and\n"
-            "OpenCV have m / 256, half a step darker.\n\n"
+            "A mantissa m of Radiance HDR is (m + 0.5) / 256, as Radiance and libvips have it; OpenImageIO, OpenCV and\n"
+            "Blender 5.0 have m / 256, half a step darker. What others make of each file is [a page of its own]"
+            "(readers.md).\n\n"
             "| Format | `--bits` | Alpha | From | To | Bits | Spaces that it can be marked as "
             "|\n|---|---|---|---|---|---|---|\n";
         for (const FileFormat* const row : all_formats())
