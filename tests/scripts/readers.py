@@ -192,7 +192,7 @@ def divided(found):
 
 
 def run(*arguments, **more):
-    done = subprocess.run([str(of) for of in arguments], capture_output=True, timeout=300, **more)
+    done = subprocess.run([str(of) for of in arguments], capture_output=True, timeout=900, **more)
     if done.returncode:
         raise RuntimeError((done.stderr.decode(errors="replace").strip().splitlines() or ["fails"])[-1])
     return done.stdout
@@ -401,6 +401,8 @@ in_chromium = {"png": {"Chromium": "shown"}, "jpg": {"Chromium": "shown"}, "exr"
 def attempt(read, *arguments):
     try:
         return read(*arguments)
+    except subprocess.TimeoutExpired:  # says something of the machine, and nothing of the file
+        raise
     except Exception as error:
         return f"not read: {error}"
 
