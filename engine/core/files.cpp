@@ -144,7 +144,13 @@ Result<> write_file(const fs::path& path, std::span<const std::byte> content, bo
     return temporary.commit();
 }
 
+bool is_place_of_system(const fs::path& path) {
+    const fs::path folder = path.parent_path();
+    return folder == "/dev" || folder == "/dev/fd" || folder == "/proc/self/fd";
+}
+
 Result<> check_own_file(const fs::path& path, FileOwner owner) {
+    if (owner == FileOwner::Anyone && is_place_of_system(path)) return {};
     std::error_code error;
     const fs::file_status status = fs::symlink_status(path, error);
     if (!fs::exists(status)) return {};
@@ -176,8 +182,18 @@ Result<AtomicPath> written_beside(const fs::path& path, std::span<const std::byt
 }  // namespace
 
 Result<> write_own_file(const fs::path& path, std::span<const std::byte> content, FileOwner owner) {
+    if (owner == FileOwner::Anyone && is_place_of_system(path)) return write_file(path, content);
     DARKROOM_TRY_VALUE(AtomicPath temporary, written_beside(path, content, owner));
     return temporary.commit();
+}
+
+Result<> make_own_folder(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)))
+        return user_error(fmt::format("{}: is a link, which is not followed", printable(path.string())));
+    fs::create_directories(path, error);
+    if (!error) return {};
+    return machine_error(fmt::format("{}: cannot be made: {}", printable(path.string()), error.message()));
 }
 
 Result<FileLock> write_locked_file(const fs::path& path, std::span<const std::byte> content) {

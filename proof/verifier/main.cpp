@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 
-#include "core/files.hpp"
 #include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "programs/darkroom/flags/device_flags.hpp"
@@ -45,25 +44,21 @@ Result<> check_outputs(const VerifyFlags& flags) {
     const fs::path own = folder / report_name;
     if (!folder.empty()) {
         DARKROOM_TRY(check_folder(folder, MissingFolders::Made));
-        DARKROOM_TRY(check_output(own, FileSet({})));
+        DARKROOM_TRY(check_report(own, FileSet({})));
     }
     if (report.empty()) return {};
     std::error_code error;
     if (!folder.empty() && fs::weakly_canonical(report, error) == fs::weakly_canonical(own, error))
         return user_error(fmt::format("--report {}: would be written by -o {}, too", printable(report.string()),
                                       printable(folder.string())));
-    // What is written in place, such as /dev/stdout, is not tried. A pipe may have nobody at its other end.
-    if (fs::exists(report, error) && fs::is_other(report, error) && !fs::is_fifo(fs::symlink_status(report, error)))
-        return {};
-    DARKROOM_TRY(darkroom::check_own_file(report, darkroom::FileOwner::Anyone));
-    return check_output(report, FileSet({}));
+    return check_report(report, FileSet({}));
 }
 
 Result<> write(const VerifyFlags& flags, const darkroom::verify::Report& report) {
     if (!flags.folder.empty()) DARKROOM_TRY(write_findings(flags.folder, report));
     if (flags.report.empty()) return {};
     const std::string text = json_of(report).dump(2) + "\n";
-    return darkroom::write_file(flags.report, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(flags.report, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone);
 }
 
 int verify(const VerifyFlags& flags) {

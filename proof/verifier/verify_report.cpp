@@ -8,7 +8,6 @@
 #include <cmath>
 #include <span>
 
-#include "core/files.hpp"
 #include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/frame_file.hpp"
@@ -160,14 +159,6 @@ Picture map_of(const Finding& finding) {
     return out;
 }
 
-Result<> make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!error) return {};
-    return darkroom::user_error(
-        fmt::format("{}: cannot be made: {}", darkroom::printable(folder.string()), error.message()));
-}
-
 template <std::uint32_t Channels>
 darkroom::Plane<Channels> plane_of(VkExtent2D extent, std::span<const float> values) {
     darkroom::Plane<Channels> out(extent.width, extent.height);
@@ -218,6 +209,8 @@ std::string cube_of(const darkroom::ColorTable& table) {
     return out;
 }
 
+const darkroom::WriteOptions as_report{.follows_links = false};
+
 Result<> write_text(const fs::path& path, const std::string& text) {
     return darkroom::write_own_file(path, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone);
 }
@@ -231,7 +224,7 @@ Result<> write_resources(const fs::path& folder, const Subject& subject) {
             const darkroom::ResourceImage& image = brought.picture;
             Picture picture(image.width, image.height);
             picture.pixels = image.rgba;
-            DARKROOM_TRY(row.is_picture ? darkroom::write_picture(folder / "picture.exr", picture)
+            DARKROOM_TRY(row.is_picture ? darkroom::write_picture(folder / "picture.exr", picture, as_report)
                                         : write_text(folder / "table.cube", cube_of(brought.table)));
         }
     return {};
@@ -249,19 +242,18 @@ Result<> write_smallest(const fs::path& folder, const Finding& finding) {
 }
 
 Result<> write_finding(const fs::path& folder, const Finding& finding) {
-    DARKROOM_TRY(make_folder(folder));
+    DARKROOM_TRY(darkroom::make_own_folder(folder));
     if (finding.made.pixels.empty()) return {};
-    const darkroom::WriteOptions whole{.samples = darkroom::SampleKind::Float, .alpha = true};
+    const darkroom::WriteOptions whole{.samples = darkroom::SampleKind::Float, .alpha = true, .follows_links = false};
     DARKROOM_TRY(darkroom::write_picture(folder / "made.exr", picture_of(finding.made), whole));
     DARKROOM_TRY(darkroom::write_picture(folder / "expected.exr", picture_of(finding.expected), whole));
-    DARKROOM_TRY(darkroom::write_picture(folder / "difference.png", map_of(finding)));
+    DARKROOM_TRY(darkroom::write_picture(folder / "difference.png", map_of(finding), as_report));
     return write_smallest(folder, finding);
 }
 
 }  // namespace
 
 Result<> write_findings(const fs::path& folder, const darkroom::verify::Report& report) {
-    DARKROOM_TRY(make_folder(folder));
     for (std::size_t i = 0; i < report.findings.size(); ++i) {
         const Finding& finding = report.findings[i];
         DARKROOM_TRY(write_finding(folder / folder_name(finding, i + 1), finding));

@@ -338,8 +338,9 @@ void Context::save_pipeline_cache_if_grown() {
     // Without the cache the next start is slower and nothing else, so a remark is enough.
     if (const Result<> written = write_own_file(pipeline_cache_path_, bytes); !written) {
         say(Severity::Info, written.error().text);
+    } else {
+        keep_others_from_writing(pipeline_cache_path_);
     }
-    keep_others_from_writing(pipeline_cache_path_);
     pipeline_cache_size_ = size;
     pipelines_saved_ = created;
 }

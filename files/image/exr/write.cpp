@@ -22,6 +22,7 @@
 #include <limits>
 
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "formats/exr/exr_source.hpp"
 #include "image/color/interop_space.hpp"
 
@@ -152,10 +153,11 @@ Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::s
     return std::move(memory.bytes);
 }
 
-Result<> write_exr(const std::filesystem::path& path, std::span<const ExrPart> parts, std::size_t max_threads) {
+Result<> write_exr(const std::filesystem::path& path, std::span<const ExrPart> parts, std::size_t max_threads,
+                   bool follows_links) {
     const auto bytes = encode_exr(parts, max_threads);
     if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
-    return write_file(path, *bytes);
+    return follows_links ? write_file(path, *bytes) : write_own_file(path, *bytes, FileOwner::Anyone);
 }
 
 }  // namespace darkroom

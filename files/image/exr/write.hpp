@@ -49,8 +49,8 @@ inline constexpr float largest_in_dwa = 60000.0F;
 /// first. `max_threads`: that compress, 0: as many as there are processors. Errors name no file.
 [[nodiscard]] Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::size_t max_threads = 0);
 
-/// The same into a file.
+/// The same into a file. See WriteOptions::follows_links.
 [[nodiscard]] Result<> write_exr(const std::filesystem::path& path, std::span<const ExrPart> parts,
-                                 std::size_t max_threads = 0);
+                                 std::size_t max_threads = 0, bool follows_links = true);
 
 }  // namespace darkroom

@@ -82,7 +82,7 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, 
     add_lights(header, frame.lights);
     for (ExrPart& shadow : shadow_parts(header, frame.lights)) parts.push_back(std::move(shadow));
     if (parts.size() > 1) parts.front().header.setName("frame");
-    return write_exr(path, parts, max_threads);
+    return write_exr(path, parts, max_threads, false);
 }
 
 }  // namespace darkroom

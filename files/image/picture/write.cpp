@@ -14,6 +14,7 @@
 
 #include "core/assert.hpp"
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/lower.hpp"
 #include "formats/jpeg/gain_map_write.hpp"
 #include "formats/jpeg/jpeg_source.hpp"
@@ -144,11 +145,11 @@ struct Written {
     const FileFormat* format = nullptr;
     EncodeDesc desc;
     std::shared_ptr<const Picture> light;  ///< WriteOptions::light
+    bool follows_links = true;             ///< as there
 };
 
 /// A map as good as the picture, which makes up for what the picture has lost in JPEG.
-Result<std::vector<std::byte>> with_gain_map(const Written& to, std::span<const std::byte> base,
-                                             const Codecs& others) {
+Result<std::vector<std::byte>> with_gain_map(const Written& to, std::span<const std::byte> base, const Codecs& others) {
     DARKROOM_TRY_VALUE(const std::vector<float> light, light_of_jpeg(base));
     const MadeGainMap map = make_gain_map(light, to.light->pixels);
     EncodeDesc desc = to.desc;
@@ -168,7 +169,7 @@ Result<> write_samples(const std::filesystem::path& path, const Written& to) {
     };
     const auto bytes = encode();
     if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
-    return write_file(path, *bytes);
+    return to.follows_links ? write_file(path, *bytes) : write_own_file(path, *bytes, FileOwner::Anyone);
 }
 
 void add_channels(const KeptLayers::Part& from, ExrPart& to) {
@@ -244,9 +245,12 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
         part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});
-    if (!options.layers) return write_exr(path, {&part, 1}, options.max_threads);
+    const auto write = [&](std::span<const ExrPart> parts) {
+        return write_exr(path, parts, options.max_threads, options.follows_links);
+    };
+    if (!options.layers) return write({&part, 1});
     const Result<std::vector<ExrPart>> parts = with_layers(path, picture, *options.layers, std::move(part));
-    return parts ? write_exr(path, *parts, options.max_threads) : failure(parts.error());
+    return parts ? write(*parts) : failure(parts.error());
 }
 
 Result<Written> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
@@ -264,7 +268,8 @@ Result<Written> describe(const std::filesystem::path& path, std::uint32_t width,
                          .is_associated = options.alpha && !is_integer(samples),
                          .compression = options.compression,
                          .color = color_of(options, samples)},
-                .light = options.light};
+                .light = options.light,
+                .follows_links = options.follows_links};
     if (!options.space && options.view == nullptr) out.desc.color = srgb_color;
     return out;
 }

@@ -47,6 +47,8 @@ struct WriteOptions {
     /// JPEG of sRGB: the same picture in linear light, as a brighter display has it, for a gain map; null: none.
     std::shared_ptr<const Picture> light;
     std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
+    bool follows_links =
+        true;  ///< false: the name is not one that the user typed for the picture; see core/own_file.hpp
 };
 
 /// The format that a path's extension, in any case, asks for.

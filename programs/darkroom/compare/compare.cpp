@@ -12,7 +12,7 @@
 #include "compare_page.hpp"
 #include "compare_pairs.hpp"
 #include "compare_report.hpp"
-#include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/compare/contact_sheet.hpp"
 #include "image/picture/write.hpp"
@@ -77,8 +77,7 @@ Result<> check_written(const std::string& path, const FilePairs& pairs, bool mak
     std::vector<std::filesystem::path> inputs;
     for (const FilePairs::Pair& pair : pairs.pairs) inputs.insert(inputs.end(), {pair.reference, pair.test});
     const MissingFolders folders = makes_folders ? MissingFolders::Made : MissingFolders::Told;
-    DARKROOM_TRY(check_output(path, FileSet(inputs), folders));
-    return {};
+    return check_report(path, FileSet(inputs), folders);
 }
 
 Result<> check_picture(const std::string& path) {
@@ -86,6 +85,8 @@ Result<> check_picture(const std::string& path) {
     DARKROOM_TRY(darkroom::sample_kind(path, {}));
     return {};
 }
+
+const darkroom::WriteOptions as_report{.follows_links = false};
 
 Result<> add_to(darkroom::ContactSheet& sheet, const std::string& name, const std::optional<ComparedColor>& color) {
     if (!color) return {};
@@ -104,7 +105,7 @@ void print(const Options& options, const Json& document, const std::string& text
 Result<> write_page(const ComparePage& page, const ComparedSet& set, const Options& options) {
     if (options.html.empty()) return {};
     const std::string text = page.html(set, options.a, options.b);
-    return darkroom::write_file(options.html, std::as_bytes(std::span(text)));
+    return darkroom::write_own_file(options.html, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone);
 }
 
 int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, const Options& options) {
@@ -112,12 +113,13 @@ int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, cons
     const Result<ComparedFiles> files = compare_files(pair.reference, pair.test, request, &color);
     if (!files) return fail(files.error());
     if (!options.diff.empty() && color)
-        if (Result<> done = darkroom::write_picture(options.diff, color->comparison.flip_map); !done)
+        if (Result<> done = darkroom::write_picture(options.diff, color->comparison.flip_map, as_report); !done)
             return fail(done.error());
     if (!options.sheet.empty()) {
         darkroom::ContactSheet sheet;
         if (Result<> done = add_to(sheet, files->test, color); !done) return fail(done.error());
-        if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
+        if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture(), as_report); !done)
+            return fail(done.error());
     }
     if (!options.html.empty()) {
         ComparePage page;
@@ -162,7 +164,8 @@ int compare_many(const FilePairs& pairs, const CompareRequest& request, const Op
     }
     if (!options.sheet.empty()) {
         set.sheet_rows = sheet.names();
-        if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
+        if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture(), as_report); !done)
+            return fail(done.error());
     }
     if (Result<> done = write_page(page, set, options); !done) return fail(done.error());
     print(options, json_of(set), summary(set));

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "confined/process.hpp"
-#include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
 #include "farm_process.hpp"
@@ -135,13 +135,10 @@ Result<std::string> submit(const fs::path& script) {
 
 /// With the script among the records, for who wants to read it; where it is not taken, nothing stays.
 Result<std::string> submit(const fs::path& folder, const std::string& script) {
+    DARKROOM_TRY(darkroom::make_own_folder(folder));
     std::error_code error;
-    fs::create_directory(folder, error);
-    if (error)
-        return darkroom::machine_error(
-            fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
     const fs::path file = fs::absolute(folder / "job.sh", error);
-    DARKROOM_TRY(darkroom::write_file(file, std::as_bytes(std::span(script))));
+    DARKROOM_TRY(darkroom::write_own_file(file, std::as_bytes(std::span(script)), darkroom::FileOwner::Anyone));
     Result<std::string> id = submit(file);
     if (!id) {
         fs::remove(file, error);

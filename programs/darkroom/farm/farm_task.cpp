@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "confined/process.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "farm.hpp"
 #include "farm_process.hpp"
@@ -51,13 +52,6 @@ FrameNumbers numbers_there(const FarmWork& work) {
     return out;
 }
 
-Result<> make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directory(folder, error);
-    if (!error) return {};
-    return darkroom::machine_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
-}
-
 class Task {
   public:
     Task(const FarmFlags& flags, FarmWork work) : flags_(flags), work_(std::move(work)) {}
@@ -84,7 +78,7 @@ class Task {
     [[nodiscard]] bool is_done() const { return record_.done.size() == record_.frames.size(); }
 
     Result<> begin() {
-        DARKROOM_TRY(make_folder(work_.folder));
+        DARKROOM_TRY(darkroom::make_own_folder(work_.folder));
         DARKROOM_TRY_VALUE(const darkroom::FrameSet frames, parse_frames(flags_.frames()));
         const std::vector<long long> numbers = frames.numbers();
         record_.name = frames.is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
@@ -176,7 +170,7 @@ Result<> check_job(const FarmFlags& flags, const FarmWork& work, std::span<const
         DARKROOM_TRY_VALUE(const bool stays, has_pictures(work.folder));
         if (stays) return same;
     }
-    DARKROOM_TRY(make_folder(work.folder));
+    DARKROOM_TRY(darkroom::make_own_folder(work.folder));
     return write_job(work.folder, {.arguments = flags.task(), .inputs = std::move(inputs), .names = work.names});
 }
 

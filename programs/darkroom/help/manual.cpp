@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-#include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "help.hpp"
 #include "programs/darkroom/commands.hpp"
@@ -87,7 +87,7 @@ Result<> write_all(std::span<const CommandText> pages, std::span<const CommandTe
     for (const CommandText& command : pages) {
         const std::string text = page_of(command, all);
         const std::filesystem::path path = std::filesystem::path(folder) / (page_name(command) + ".1");
-        DARKROOM_TRY(darkroom::write_file(path, std::as_bytes(std::span(text))));
+        DARKROOM_TRY(darkroom::write_own_file(path, std::as_bytes(std::span(text)), darkroom::FileOwner::Anyone));
     }
     return {};
 }

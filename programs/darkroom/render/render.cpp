@@ -230,8 +230,8 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
             if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
                 return user_error(fmt::format("{}: -o and --save-frame name the same file", printable(path.string())));
-            DARKROOM_TRY(check_output(path, inputs, run.missing_folders()));
-            if (place == &shot.frame) DARKROOM_TRY(darkroom::check_own_file(path, darkroom::FileOwner::Anyone));
+            const auto check = place == &shot.frame ? check_report : check_output;
+            DARKROOM_TRY(check(path, inputs, run.missing_folders()));
         }
     return {};
 }

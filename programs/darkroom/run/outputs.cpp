@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/picture/alpha.hpp"
 #include "report.hpp"
@@ -68,6 +69,11 @@ Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFold
     // Reserving the file tells now, before any work, whether it can be written.
     DARKROOM_TRY(darkroom::AtomicPath::beside(output));
     return {};
+}
+
+Result<> check_report(const fs::path& report, const FileSet& inputs, MissingFolders folders) {
+    DARKROOM_TRY(darkroom::check_own_file(report, darkroom::FileOwner::Anyone));
+    return darkroom::is_place_of_system(report) ? Result<>() : check_output(report, inputs, folders);
 }
 
 bool is_output_pattern(const std::string& out) {

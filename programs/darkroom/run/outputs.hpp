@@ -50,6 +50,10 @@ enum class MissingFolders {
 [[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs,
                                               MissingFolders folders = MissingFolders::Refused);
 
+/// The same of what is written beside the pictures: reports, frames. A link is refused, and so is what is no file.
+[[nodiscard]] darkroom::Result<> check_report(const std::filesystem::path& report, const FileSet& inputs,
+                                              MissingFolders folders = MissingFolders::Refused);
+
 /// Does OUT name a folder? One that is to be made has no extension.
 [[nodiscard]] bool is_output_folder(const std::string& out, MissingFolders missing);
 /// What an input of this number becomes. Nothing is looked at.

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
 #include "lab/lab.hpp"
@@ -111,7 +112,8 @@ class Capture {
         for (const long long frame : job_.frames) DARKROOM_TRY(capture(frame, progress));
         // It comes last: a folder with a description is whole.
         const std::string text = describe(job_, fs::path(options_.scene).filename().string()).dump(2) + "\n";
-        return darkroom::write_file(job_.folder / capture_description, std::as_bytes(std::span(text)));
+        return darkroom::write_own_file(job_.folder / capture_description, std::as_bytes(std::span(text)),
+                                        darkroom::FileOwner::Anyone);
     }
 
     [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
@@ -161,9 +163,9 @@ class Capture {
                                           static_cast<double>(space.available) / megabyte));
         DARKROOM_TRY(check_folder(job_.folder, MissingFolders::Made));
         fs::remove(job_.folder / capture_description, error);
-        DARKROOM_TRY(check_folder(job_.folder / "truth", MissingFolders::Made));
+        DARKROOM_TRY(darkroom::make_own_folder(job_.folder / "truth"));
         for (const CaptureScale& scale : job_.scales)
-            DARKROOM_TRY(check_folder(job_.folder / scale.folder, MissingFolders::Made));
+            DARKROOM_TRY(darkroom::make_own_folder(job_.folder / scale.folder));
         return {};
     }
 

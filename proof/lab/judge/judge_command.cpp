@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/files.hpp"
+#include "core/own_file.hpp"
 #include "core/srgb.hpp"
 #include "core/text/markup.hpp"
 #include "core/text/param_text.hpp"
@@ -346,13 +347,15 @@ class Judging {
         DARKROOM_TRY_VALUE(const darkroom::Comparison compared, darkroom::compare(a, b));
         for (const auto& [kind, picture] :
              {std::pair("truth", &a), std::pair("test", &b), std::pair("error", &compared.flip_map)})
-            DARKROOM_TRY(darkroom::write_picture(fs::path(options_.folder) / picture_name(kind, number), *picture));
+            DARKROOM_TRY(darkroom::write_picture(fs::path(options_.folder) / picture_name(kind, number), *picture,
+                                                 {.follows_links = false}));
         return {};
     }
 
     Result<> write_report() const {
         const auto write = [&](const char* name, const std::string& text) {
-            return darkroom::write_file(fs::path(options_.folder) / name, std::as_bytes(std::span(text)));
+            return darkroom::write_own_file(fs::path(options_.folder) / name, std::as_bytes(std::span(text)),
+                                            darkroom::FileOwner::Anyone);
         };
         DARKROOM_TRY(write("judge.json", json_of(out_).dump(2) + "\n"));
         return write("index.html", page_of(out_));
