@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The interface on the command line and in looks.
 #include "cli_support.hpp"
+#include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
+#include "image/test_bytes.hpp"
 
 namespace darkroom {
 namespace {
@@ -310,6 +312,43 @@ TEST_F(CliUi, InertiaKeepsTheLooksOffset) {
     with_events.insert(with_events.end(), {"--events", path("events.toml"), "--time", "9"});
     EXPECT_EQ(developed(with_events).pixels, developed(moved).pixels);
     EXPECT_NE(developed(moved).pixels, developed({"--look", path("ui.toml")}).pixels);
+}
+
+// An interface is a picture like any other: what its file says counts, and what is not taken is told.
+TEST_F(CliUi, WhatThePictureSaysIsBelievedAndTold) {
+    const std::string plain = test::content(path("hud.png"));
+    const std::size_t head = 8 + 25;  // signature, IHDR
+    const auto with_chunk = [&](const std::string& chunk) {
+        std::string out = plain;
+        // An sRGB of its own is gone.
+        if (const std::size_t at = out.find("sRGB"); at != std::string::npos) out.erase(at - 4, 13);
+        return write("other.png", out.insert(head, chunk));
+    };
+    const std::string frames("\0\0\0\3\0\0\0\0", 8);
+    const std::vector<std::string> typed{"develop", path("frame.exr"), "--look", path("plain.toml"),
+                                         "--ui",    path("other.png"), "-o",     path("out.png")};
+    with_chunk(png_chunk("acTL", frames));
+    const Outcome animated = run(typed);
+    EXPECT_EQ(animated.code, 0);
+    EXPECT_NE(animated.err.find("other.png: "), std::string::npos) << animated.err;
+    EXPECT_NE(animated.err.find("3 frames"), std::string::npos) << animated.err;
+    EXPECT_EQ(std::ranges::count(animated.err, '\n'), 1) << animated.err;
+    // Display P3: 200, 7, 16 by the primaries of the standard.
+    with_chunk(png_chunk("cICP", std::string("\14\15\0\1", 4)));
+    const Outcome wide = run(typed);
+    EXPECT_EQ(wide.code, 0) << wide.err;
+    EXPECT_EQ(wide.err, "");
+    constexpr std::array<std::array<double, 3>, 3> p3_to_rec709{{{1.2249401763, -0.2249401763, 0},
+                                                                 {-0.0420569547, 1.0420569547, 0},
+                                                                 {-0.0196375546, -0.0786360456, 1.0982736}}};
+    const std::array<float, 3> codes{200 / 255.0F, 7 / 255.0F, 16 / 255.0F};
+    const Picture made = picture("out.png");
+    for (std::size_t row = 0; row < 3; ++row) {
+        double light = 0;
+        for (std::size_t i = 0; i < 3; ++i) light += p3_to_rec709[row][i] * srgb_decode(codes[i]);
+        const auto expected = std::lround(srgb_encode(std::clamp(static_cast<float>(light), 0.0F, 1.0F)) * 255);
+        EXPECT_EQ(code(made.at(3, 7)[row]), expected) << row;
+    }
 }
 
 TEST_F(CliUi, ErrorsAreOneLine) {

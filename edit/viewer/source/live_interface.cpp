@@ -98,7 +98,10 @@ Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent, float sc
     }
     if (shown_ != nullptr && shown_extent_.width == extent.width && shown_extent_.height == extent.height)
         return shown_;
-    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height));
+    std::vector<std::string> warnings;
+    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height, &warnings));
+    if (shown_ == nullptr && print_)
+        for (const std::string& warning : warnings) print_(darkroom::Severity::Warning, warning);
     shown_extent_ = extent;
     return shown_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(made));
 }

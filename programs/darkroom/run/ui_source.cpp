@@ -153,7 +153,10 @@ Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExt
         return picture_;
     }
     if (extent.width == extent_.width && extent.height == extent_.height) return picture_;
-    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height));
+    std::vector<std::string> warnings;
+    DARKROOM_TRY_VALUE(auto made, darkroom::read_ui_image(ui_.document, extent.width, extent.height, &warnings));
+    if (extent_.width == 0)  // once, whatever sizes follow
+        for (const std::string& warning : warnings) warn(warning);
     picture_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(made));
     extent_ = extent;
     return picture_;
