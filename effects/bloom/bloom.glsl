@@ -41,7 +41,9 @@ vec3 bloom_bright_part(vec3 color) {
 
 // Filter and threshold weigh a lamp by how many boxes it lies in, so all taps lie on corners of texels, two texels apart:
 // what is made there, a cell, does not depend on where the lamp lies. Along an odd side a pixel of level 0 lies between two
-// cells: this far behind the first.
+// cells: this far behind the first; along an even one on the first, and 0 is no cell behind it. That is asked of the pixel
+// and not of the sides: lavapipe (Mesa 22.3) makes a kernel anew in each frame, and keeps it, where loops end by a block's
+// values alone.
 vec2 bloom_between_cells(ivec2 texel, ivec2 source, ivec2 extent) {
     return vec2(source & 1) * vec2(2 * texel + 1) / vec2(4 * extent);
 }
@@ -56,8 +58,8 @@ vec3 bloom_tap(int from, vec2 place) {
 // The scene to level 0, a kernel of a pixel: 13 taps, cleaned, averaged as five overlapping boxes, then the threshold.
 
 vec4 shade(Pixel pixel) {
-    ivec2 source = size(bloom_source), cells = 1 + (source & 1);
-    vec2 between = bloom_between_cells(pixel.texel, source, pixel.size);
+    vec2 between = bloom_between_cells(pixel.texel, size(bloom_source), pixel.size);
+    ivec2 cells = 1 + ivec2(greaterThan(between, vec2(0.0)));
     vec3 light = vec3(0.0);
     for (int y = 0; y < cells.y; ++y)
         for (int x = 0; x < cells.x; ++x)
@@ -72,8 +74,9 @@ vec4 shade(Pixel pixel) {
 void run() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(2, 1), extent = size(bloom_level_0);
     if (any(greaterThanEqual(texel, extent))) return;
-    ivec2 source = size(bloom_source), cells = 1 + (source & 1), behind = texel + ivec2(1, 0);
+    ivec2 source = size(bloom_source), behind = texel + ivec2(1, 0);
     vec2 between = bloom_between_cells(texel, source, extent);
+    ivec2 cells = 1 + ivec2(greaterThan(between, vec2(0.0)));
     float between_behind = bloom_between_cells(behind, source, extent).x;
     vec3 light[2] = vec3[2](vec3(0.0), vec3(0.0));
     for (int y = 0; y < cells.y; ++y)
@@ -127,7 +130,7 @@ vec3 bloom_row(ivec2 first, vec4 weights) {
 vec4 shade(Pixel pixel) {
     vec2 place = bloom_below_at(pixel.texel, size(bloom_below), pixel.size), low = floor(place), f = place - low;
     ivec2 first = ivec2(low) - 1;
-    float tent = custom[0].y == 2.0 ? custom[0].w : 1.0;
+    float tent = mix(1.0, custom[0].w, float(custom[0].y == 2.0));
     vec4 x = bloom_weights(f.x, tent);
     vec3 glow = bloom_weighed(bloom_row(first, x), bloom_row(first + ivec2(0, 1), x), bloom_row(first + ivec2(0, 2), x),
                               bloom_row(first + ivec2(0, 3), x), bloom_weights(f.y, tent));

@@ -24,7 +24,7 @@ struct BloomTaps {
 // How far outer and inner rows are from the centre.
 const vec2 bloom_rows_between = vec2(2.0, 1.0);
 vec2 bloom_rows(ivec2 above) {
-    return (above.x & above.y & 1) == 1 ? vec2(1.0, 1.5) : bloom_rows_between;
+    return mix(bloom_rows_between, vec2(1.0, 1.5), float(above.x & above.y & 1));
 }
 
 BloomColumn bloom_outer(int from, vec2 place, vec2 rows) {

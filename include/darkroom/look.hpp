@@ -117,6 +117,7 @@ struct LookUi {
 struct WrittenValue {
     const EffectInfo* effect = nullptr;
     std::string_view parameter;  ///< the row's name, or "enabled"
+    std::string place{};         ///< "line:column"
 };
 
 struct Look {
@@ -198,6 +199,11 @@ struct LookOverride {
 /// the working directory.
 [[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides,
                                      const LookOptions& options = {});
+
+/// A sentence for each entry that is off and has a value, in the look's file or among `typed`, where nothing beside
+/// that value says whether it should be on: "my.toml:3:1: vignette_smoothness changes nothing: vignette is off; ...".
+[[nodiscard]] std::vector<std::string> values_without_effect(const Look& look,
+                                                             std::span<const LookOverride> typed = {});
 
 struct ApplyOptions {
     /// Gives effects of the flat table that are off their place, so that Composer::set_enabled() finds them: they own

@@ -109,14 +109,16 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
                    "two inputs would be written to it");
     // Of a sequence, those that are asked for count.
     const std::string sequence = path("shot.%04d.exr");
-    EXPECT_EQ(run({"develop", sequence, "--frames", "9", "-o", path("nine.png")}).code, 0);
+    const Outcome nine = run({"develop", sequence, "--frames", "9-13", "-o", path("nine.png")});
+    EXPECT_EQ(nine.code, 0);
+    EXPECT_NE(nine.err.find("--frames 9-13: no input has these numbers: 11, 13\n"), std::string::npos) << "on twos";
     EXPECT_TRUE(fs::exists(path("nine.png")));
     expect_refused({"develop", sequence, "-o", path("new")}, 1, "2 inputs need a folder (--mkdir makes a new one)");
     EXPECT_EQ(run({"develop", sequence, "--mkdir", "-o", path("new")}).code, 0);
     EXPECT_TRUE(fs::exists(path("new/shot.0007.png")));
     write("box.scene.toml", "");
     expect_refused({"develop", path("box.scene.toml"), "-o", path("one.png")}, 1,
-                   "box.scene.toml: a scene or a model is drawn by `darkroom render`\n");
+                   "box.scene.toml: is no picture; --look takes a look, and `darkroom render` a scene or a model\n");
 }
 
 TEST_F(Cli, WhatChangesNothingOrStandsInAWrongPlaceIsTold) {
@@ -136,7 +138,10 @@ TEST_F(Cli, WhatChangesNothingOrStandsInAWrongPlaceIsTold) {
     EXPECT_EQ(told({"--lens-flare-ghosts", "3", "--no-lens-flare"}), "") << "who says so knows it";
     write("my.toml", "[post_process]\norder = \"scene_linear\"\nlens_flare_ghosts = 3\n");
     const std::vector<std::string> look{"--look", path("my.toml")};
-    EXPECT_EQ(told(look), idle(path("my.toml") + ": lens_flare_ghosts", "lens_flare"));
+    EXPECT_EQ(told(look),
+              fmt::format("darkroom: warning: {}:3:1: lens_flare_ghosts changes nothing: lens_flare is off; "
+                          "lens_flare_enabled = true switches it on\n",
+                          path("my.toml")));
     EXPECT_EQ(told({"--look", path("my.toml"), "--lens-flare"}), "");
     write("off.toml",
           "[post_process]\norder = \"scene_linear\"\nvignette_smoothness = 0.3\nvignette_enabled = false\n");

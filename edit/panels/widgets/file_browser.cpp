@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cfloat>
+#include <cstdlib>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -22,6 +23,8 @@ namespace darkroom::panels {
 namespace {
 
 constexpr const char* popup = "files";
+
+bool is_path(const std::string& typed) { return typed.find('/') != std::string::npos; }
 
 }  // namespace
 
@@ -67,7 +70,7 @@ void FileBrowser::enter(const std::filesystem::path& folder) {
 
 std::vector<std::size_t> FileBrowser::visible() const {
     std::vector<std::size_t> out;
-    const std::string wanted = lower(filter_);
+    const std::string wanted = is_path(filter_) ? "" : lower(filter_);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         const Entry& entry = entries_[i];
         const bool is_of_kind = entry.is_folder || shows_all_ || request_.extensions.empty() ||
@@ -95,16 +98,29 @@ void FileBrowser::choose(std::size_t index) {
         take(entry.path);
 }
 
+std::filesystem::path FileBrowser::typed(const std::string& name) const {
+    const char* const home = std::getenv("HOME");
+    if (name.starts_with("~/") && home != nullptr) return home + name.substr(1);
+    return folder_ / name;
+}
+
 void FileBrowser::accept() {
+    std::error_code error;
+    if (!request_.is_saving && is_path(filter_)) {
+        const std::filesystem::path file = typed(filter_);
+        if (std::filesystem::is_directory(file, error)) return enter(file);
+        if (std::filesystem::exists(file, error)) return take(file);
+        problem_ = fmt::format("{}: there is no such file", printable(file.string()));
+        return;
+    }
     if (!request_.is_saving) {
         const std::vector<std::size_t> seen = visible();
         if (present_ < seen.size()) choose(seen[present_]);
         return;
     }
     if (name_.empty()) return;
-    std::filesystem::path file = folder_ / name_;
+    std::filesystem::path file = typed(name_);
     if (!file.has_extension() && !request_.extensions.empty()) file += request_.extensions.front();
-    std::error_code error;
     if (std::filesystem::is_directory(file, error)) return enter(file);
     if (std::filesystem::exists(file, error) && !is_replacing_) {
         is_replacing_ = true;
@@ -139,10 +155,11 @@ void FileBrowser::draw_head() {
     if (is_pressed(ImGuiKey_Backspace) && filter_.empty() && !request_.is_saving) enter(folder_.parent_path());
     if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    if (text_field(request_.is_saving ? "##name" : "##filter", request_.is_saving ? "Name" : "Filter",
+    if (text_field(request_.is_saving ? "##name" : "##filter", request_.is_saving ? "Name" : "Filter, or a path",
                    request_.is_saving ? name_ : filter_)) {
         present_ = 0;
         is_replacing_ = false;
+        problem_.clear();
     }
 }
 

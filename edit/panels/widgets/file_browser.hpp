@@ -47,6 +47,8 @@ class FileBrowser {
     [[nodiscard]] std::vector<std::size_t> visible() const;
     void press_keys(const std::vector<std::size_t>& seen);
     void accept();
+    /// A name in the folder, or a path that is relative to it.
+    [[nodiscard]] std::filesystem::path typed(const std::string& name) const;
 
     FileRequest request_;
     bool is_open_ = false, is_new_ = false, shows_all_ = false, is_replacing_ = false, is_cut_short_ = false;

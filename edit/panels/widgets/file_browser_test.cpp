@@ -73,6 +73,21 @@ TEST_F(PanelFiles, KeysChoose) {
     EXPECT_EQ(chosen_.size(), 2u);
 }
 
+TEST_F(PanelFiles, APathThatIsTypedIsTaken) {
+    open(false, {".cube"});
+    gui_.type("tables/none.cube");
+    gui_.key(ImGuiKey_Enter);
+    EXPECT_TRUE(browser_.is_open() && chosen_.empty());
+    open(false, {".cube"});
+    gui_.type((folder_ / "tables/print.cube").string());
+    gui_.key(ImGuiKey_Enter);
+    EXPECT_EQ(chosen_, std::vector{folder_ / "tables/print.cube"});
+    open(false);
+    gui_.type("tables/film");
+    gui_.key(ImGuiKey_Enter);
+    EXPECT_EQ(browser_.folder(), folder_ / "tables" / "film");
+}
+
 TEST_F(PanelFiles, SavingNamesAndAsksBeforeItReplaces) {
     open(true);
     gui_.type("new");

@@ -23,7 +23,7 @@ using darkroom::window::PaneChannels;
 using darkroom::window::PaneTransfer;
 
 constexpr darkroom::ParamInfo exposure_row{.name = "exposure", .unit = {"stops"}, .range = {-8, 8}};
-constexpr std::array sides{"look", "saved", "off", "other"};
+constexpr std::array sides{"look", "saved", "off", "file"};
 constexpr std::array channels{"RGB", "red", "green", "blue", "alpha", "luminance"};
 
 /// `width`: in heights of the font.

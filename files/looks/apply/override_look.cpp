@@ -71,7 +71,62 @@ class Overrider {
     std::vector<std::pair<LookEntry*, Toggle>> toggles_;
 };
 
+struct GivenValue {
+    const LookEntry* entry = nullptr;
+    std::string shown;
+    bool says_what_is_on = false;
+};
+
+bool says_what_is_on(const ParamInfo* row) { return row == nullptr || row->is_amount; }
+
+std::vector<GivenValue> given_by_file(Look& look) {
+    std::vector<GivenValue> out;
+    for (const WrittenValue& value : look.written)
+        out.push_back(
+            {find_entry(look, value.effect->name),
+             fmt::format("{}:{}: {}", look.shown_name, value.place, flat_key(value.effect->name, value.parameter)),
+             says_what_is_on(value.effect->parameters.find(value.parameter))});
+    return out;
+}
+
+std::vector<GivenValue> given_by_hand(Look& look, std::span<const LookOverride> typed) {
+    std::vector<GivenValue> out;
+    for (const LookOverride& one : typed)
+        if (const Result<LookTarget> target = find_target(look, one.key, one.shown))
+            out.push_back({target->entry, printable(one.shown),
+                           target->is_state || (target->row != nullptr && says_what_is_on(target->row))});
+    return out;
+}
+
+std::string switch_of(const Look& look, std::string_view value, std::string_view name) {
+    if (value.starts_with("--")) return fmt::format("--set {}.enabled=true", name);
+    return look.is_flat ? flat_key(name, "enabled") + " = true" : fmt::format("{}.enabled = true", name);
+}
+
+void tell_of_idle_values(const Look& look, std::span<const GivenValue> values, std::vector<std::string>& out) {
+    const std::vector<std::string> names = entry_names(look);
+    for (std::size_t i = 0; i < look.entries.size(); ++i) {
+        const LookEntry& entry = look.entries[i];
+        if (entry.state.enabled.on != 0 || is_moved(look, names[i])) continue;
+        const auto first = std::ranges::find(values, &entry, &GivenValue::entry);
+        const bool is_meant = std::ranges::any_of(
+            values, [&](const GivenValue& value) { return value.entry == &entry && value.says_what_is_on; });
+        if (first != values.end() && !is_meant)
+            out.push_back(fmt::format("{} changes nothing: {} is off; {} switches it on", first->shown, names[i],
+                                      switch_of(look, first->shown, names[i])));
+    }
+}
+
 }  // namespace
+
+std::vector<std::string> values_without_effect(const Look& look, std::span<const LookOverride> typed) {
+    std::vector<std::string> out;
+    if (!look.is_enabled) return out;
+    Look own = look;
+    tell_of_idle_values(own, given_by_hand(own, typed), out);
+    tell_of_idle_values(own, given_by_file(own), out);
+    return out;
+}
 
 Result<> override_look(Look& look, std::span<const LookOverride> overrides, const LookOptions& options) try {
     return Overrider(look, options).run(overrides);

@@ -77,7 +77,10 @@ class FlatReader {
         const auto found = targets_.find(key.str());
         if (found == targets_.end()) return read_unknown(key, node);
         const auto& [entry, row] = found->second;
-        if (!is_of_ui_) look_.written.push_back({entry->effect, row->name});
+        if (!is_of_ui_) {
+            const toml::source_position at = key.source().begin;
+            look_.written.push_back({entry->effect, row->name, fmt::format("{}:{}", at.line, at.column)});
+        }
         if (row == &enabled_row) return;
         if (!reader_.take(*row, *entry, node, key.str()) || !row->is_amount || is_of_ui_) return;
         entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;

@@ -203,17 +203,16 @@ Result<std::size_t> add_inputs(const Options& options, Job& job) {
     // Files of one eye each have no other.
     if (names != options.inputs) job.frame.view.clear();
     DARKROOM_TRY_VALUE(job.inputs, darkroom::expand_inputs(names));
-    // Frames on twos are a step apart as others are.
-    long long least = 0;
-    for (std::size_t i = 1; i < job.inputs.size(); ++i)
-        if (const long long step = job.inputs[i].number - job.inputs[i - 1].number; step > 0)
-            least = least == 0 ? step : std::min(least, step);
-    job.step = std::max(1LL, least);
+    job.step = step_of(job.inputs);
     if (options.frames) {
         DARKROOM_TRY_VALUE(job.frames, parse_frames(*options.frames));
     }
     for (std::size_t i = job.inputs.size(); i-- > 0;)
-        if (job.is_asked_for(job.inputs[i].number)) return i;
+        if (job.is_asked_for(job.inputs[i].number)) {
+            // A stream tells of them where it holds a picture in their place.
+            if (job.frames && !job.stream) warn_of_missing_inputs(*options.frames, *job.frames, job.inputs);
+            return i;
+        }
     return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
                                   darkroom::printable(options.frames.value_or("")), job.inputs.size()));
 }
@@ -236,8 +235,8 @@ Result<> part_looks(const Options& options, Job& job) {
         return user_error("--gain-map: works without --output-space, --display and --alpha");
     for (const Step& step : job.steps)
         if (const auto format = darkroom::written_format(step.output); !format || !(*format)->has_quality)
-            return user_error(fmt::format("--gain-map: {} has none; .jpg has",
-                                          darkroom::printable(step.output.string())));
+            return user_error(
+                fmt::format("--gain-map: {} has none; .jpg has", darkroom::printable(step.output.string())));
     darkroom::Look standard = job.look;
     bool is_brighter = false;
     for (darkroom::LookEntry& entry : standard.entries) {
@@ -249,8 +248,9 @@ Result<> part_looks(const Options& options, Job& job) {
         is_brighter = true;
     }
     if (!is_brighter)
-        return user_error("--gain-map: the look ends at white on every display; --tonemap-curve bt2390 "
-                          "--tonemap-peak-nits 1000 reaches beyond");
+        return user_error(
+            "--gain-map: the look ends at white on every display; --tonemap-curve bt2390 "
+            "--tonemap-peak-nits 1000 reaches beyond");
     job.brighter = std::move(job.look);
     job.look = std::move(standard);
     suit(*job.brighter, darkroom::DevelopTarget::SceneLinear, job.write);
@@ -265,8 +265,9 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     DARKROOM_TRY(options.run.start_report());
     for (const std::string& input : options.inputs)
         if (darkroom::scene::is_scene_path(input))
-            return user_error(fmt::format("{}: a scene or a model is drawn by `darkroom render`",
-                                          darkroom::printable(input)));
+            return user_error(
+                fmt::format("{}: is no picture; --look takes a look, and `darkroom render` a scene or a model",
+                            darkroom::printable(input)));
     if (options.keeps_layers && options.frame.keeps_overscan)
         return user_error("--overscan: works without --keep-layers, which keeps the pixels of the display window only");
     if (options.frame.keeps_overscan && (!options.size.empty() || !options.output_size.empty()))
@@ -355,7 +356,7 @@ class Develop {
         darkroom::DevelopedPicture picture;
         std::shared_ptr<darkroom::Picture> light;  ///< for a gain map
         std::vector<std::byte> packed;             ///< of a stream: what goes out
-        VkExtent2D stored{}, extent{};  ///< of the frame in its file, and of the picture
+        VkExtent2D stored{}, extent{};             ///< of the frame in its file, and of the picture
     };
 
     // The device is made when the first frame has been read: an unreadable one is refused at once.

@@ -139,14 +139,7 @@ Result<std::vector<FarmFrame>> FarmFlags::frames_in(const std::optional<darkroom
         return user_error(
             fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs.size()));
     std::ranges::sort(out, {}, &FarmFrame::number);
-    if (frames) {
-        FrameNumbers without_input;
-        for (const long long number : frames->numbers()) without_input.insert(number);
-        for (const FarmFrame& frame : out) without_input.erase(frame.number);
-        if (!without_input.empty())
-            warn(fmt::format("--frames {}: no input of {} has these numbers: {}", printable(frames_), printable(input_),
-                             shown(without_input)));
-    }
+    if (frames) warn_of_missing_inputs(frames_, *frames, inputs);
     return out;
 }
 

@@ -30,18 +30,6 @@ constexpr const char* job_file = "job.json";
 constexpr std::size_t max_bytes = std::size_t{16} << 20;
 constexpr std::array<const char*, 3> state_names{"begun", "done", "failed"};
 
-using Ranges = std::vector<std::array<long long, 2>>;
-
-Ranges ranges_of(const FrameNumbers& numbers) {
-    Ranges out;
-    for (const long long number : numbers)
-        if (!out.empty() && out.back()[1] + 1 == number)
-            out.back()[1] = number;
-        else
-            out.push_back({number, number});
-    return out;
-}
-
 /// What is wrong with a file, thrown and caught in this one, as the parser's own errors are.
 struct Wrong {
     std::string text;
@@ -171,14 +159,6 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
 }  // namespace
 
 fs::path job_path(const fs::path& folder) { return folder / job_file; }
-
-std::string shown(const FrameNumbers& numbers) {
-    std::string out;
-    for (const auto& [first, last] : ranges_of(numbers))
-        out += fmt::format("{}{}", out.empty() ? "" : ", ",
-                           first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
-    return out.empty() ? "none" : out;
-}
 
 Json json_of(const FrameNumbers& numbers) { return ranges_of(numbers); }
 

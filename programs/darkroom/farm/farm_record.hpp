@@ -13,16 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "programs/darkroom/run/frames.hpp"
 #include "programs/darkroom/run/json.hpp"
 
 namespace app {
 
-using FrameNumbers = std::set<long long>;
-
 inline constexpr const char* farm_suffix = ".farm";
 
-/// "0-6, 9"; "none".
-[[nodiscard]] std::string shown(const FrameNumbers& numbers);
 /// [[0, 6], [9, 9]]
 [[nodiscard]] Json json_of(const FrameNumbers& numbers);
 [[nodiscard]] FrameNumbers without(const FrameNumbers& numbers, const FrameNumbers& others);

@@ -66,49 +66,6 @@ void drop_what_is_off(Look& look) {
     });
 }
 
-struct GivenValue {
-    const darkroom::LookEntry* entry = nullptr;
-    std::string shown;
-    bool says_what_is_on = false;
-};
-
-bool says_what_is_on(const darkroom::ParamInfo* row) { return row == nullptr || row->is_amount; }
-
-std::vector<GivenValue> given_by_file(Look& look) {
-    std::vector<GivenValue> out;
-    for (const darkroom::WrittenValue& value : look.written) {
-        const std::string_view effect = value.effect->name;
-        out.push_back({darkroom::find_entry(look, effect),
-                       fmt::format("{}: {}", look.shown_name, darkroom::flat_key(effect, value.parameter)),
-                       says_what_is_on(value.effect->parameters.find(value.parameter))});
-    }
-    return out;
-}
-
-std::vector<GivenValue> given_by_hand(Look& look, std::span<const LookOverride> typed) {
-    std::vector<GivenValue> out;
-    for (const LookOverride& one : typed)
-        if (const Result<darkroom::LookTarget> target = darkroom::find_target(look, one.key, one.shown))
-            out.push_back({target->entry, darkroom::printable(one.shown),
-                           target->is_state || (target->row != nullptr && says_what_is_on(target->row))});
-    return out;
-}
-
-/// One warning for each entry that is off, has a value, and none beside it that says whether it should be on.
-void warn_of_what_changes_nothing(const Look& look, std::span<const GivenValue> values) {
-    const std::vector<std::string> names = darkroom::entry_names(look);
-    for (std::size_t i = 0; i < look.entries.size(); ++i) {
-        const darkroom::LookEntry& entry = look.entries[i];
-        if (entry.state.enabled.on != 0 || darkroom::is_moved(look, names[i])) continue;
-        const auto first = std::ranges::find(values, &entry, &GivenValue::entry);
-        const bool is_meant = std::ranges::any_of(
-            values, [&](const GivenValue& value) { return value.entry == &entry && value.says_what_is_on; });
-        if (first != values.end() && !is_meant)
-            warn(fmt::format("{} changes nothing: {} is off; --set {}.enabled=true switches it on", first->shown,
-                             names[i], names[i]));
-    }
-}
-
 }  // namespace
 
 LookFlags::Value& LookFlags::add_value(std::string key, std::string flag) {
@@ -316,10 +273,8 @@ Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
     DARKROOM_TRY(add_custom_effects(look));
     DARKROOM_TRY_VALUE(const std::vector<LookOverride> values, overrides());
     DARKROOM_TRY(darkroom::override_look(look, values, options(nullptr)));
-    if (!keeps_what_is_off && look.is_enabled) {
-        warn_of_what_changes_nothing(look, given_by_hand(look, values));
-        warn_of_what_changes_nothing(look, given_by_file(look));
-    }
+    if (!keeps_what_is_off)
+        for (const std::string& text : darkroom::values_without_effect(look, values)) warn(text);
     const auto first = look.entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
     const std::vector<darkroom::LookEntry> customs(first, look.entries.end());
     look.entries.erase(first, look.entries.end());

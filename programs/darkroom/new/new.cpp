@@ -60,6 +60,10 @@ order = "scene_linear"
 # A multiplier: 2 is one stop brighter.
 exposure = 1.2
 
+# A table has effects of its own, which `darkroom plan NAME.toml` lists: occlusion, where frames bring depth. Frames of a
+# path tracer have theirs in the light; take this line out for those of a game.
+ssao_enabled = false
+
 # A value above 0 switches the effect on, 0 switches it off.
 bloom_intensity = 0.06
 bloom_threshold = 1.0
@@ -173,9 +177,10 @@ Result<> make(const Options& options) {
     if (std::filesystem::exists(file, error) && !options.is_forced)
         return user_error(fmt::format("{}: exists already; --force replaces it", printable(file)));
     DARKROOM_TRY(darkroom::write_file(file, std::as_bytes(std::span(text))));
-    const std::filesystem::path sample = shipped_file("samples/window.exr");
-    const std::string frame =
-        sample.empty() ? "frame.exr" : sample.lexically_proximate(std::filesystem::current_path());
+    const std::filesystem::path name_of_sample = "samples/window.exr", shipped = shipped_file(name_of_sample);
+    const std::string frame = std::filesystem::exists(name_of_sample, error) ? name_of_sample.string()
+                              : shipped.empty()                              ? "frame.exr"
+                                                                             : shipped.string();
     tell(fmt::format("{}: {}", printable(file),
                      fmt::format(fmt::runtime(kind->next), fmt::arg("frame", shell_quoted(printable(frame))),
                                  fmt::arg("file", shell_quoted(printable(file))))));

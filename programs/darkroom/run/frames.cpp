@@ -272,6 +272,43 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
     return told;
 }
 
+long long step_of(std::span<const darkroom::NumberedFile> inputs) {
+    long long least = 0;
+    for (std::size_t i = 1; i < inputs.size(); ++i)
+        if (const long long step = inputs[i].number - inputs[i - 1].number; step > 0)
+            least = least == 0 ? step : std::min(least, step);
+    return std::max(1LL, least);
+}
+
+std::vector<std::array<long long, 2>> ranges_of(const FrameNumbers& numbers) {
+    std::vector<std::array<long long, 2>> out;
+    for (const long long number : numbers)
+        if (!out.empty() && out.back()[1] + 1 == number)
+            out.back()[1] = number;
+        else
+            out.push_back({number, number});
+    return out;
+}
+
+std::string shown(const FrameNumbers& numbers) {
+    std::string out;
+    for (const auto& [first, last] : ranges_of(numbers))
+        out += fmt::format("{}{}", out.empty() ? "" : ", ",
+                           first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+    return out.empty() ? "none" : out;
+}
+
+void warn_of_missing_inputs(std::string_view typed, const darkroom::FrameSet& frames,
+                            std::span<const darkroom::NumberedFile> inputs) {
+    const long long step = step_of(inputs);
+    FrameNumbers missing;
+    for (const long long number : frames.numbers())
+        if ((number - inputs.front().number) % step == 0) missing.insert(number);
+    for (const darkroom::NumberedFile& input : inputs) missing.erase(input.number);
+    if (!missing.empty())
+        warn(fmt::format("--frames {}: no input has these numbers: {}", darkroom::printable(typed), shown(missing)));
+}
+
 void warn_of_what_is_misplaced(const darkroom::Plan& plan) {
     for (const std::string& text : plan.misplaced) warn(text);
 }

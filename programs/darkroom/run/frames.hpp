@@ -2,11 +2,16 @@
 #pragma once
 // Frames of files as the library's develop functions take them, and frames of a renderer as files.
 
+#include <array>
 #include <darkroom/look.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "develop/developer.hpp"
 #include "develop/reference_chain.hpp"
 #include "image/frame/frame_file.hpp"
+#include "image/frame/frame_set.hpp"
 #include "image/frame/sequence.hpp"
 #include "image/picture/picture.hpp"
 #include "image/picture/write.hpp"
@@ -47,6 +52,17 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame = {});
+/// From one input's number to the next, where none is missing: frames on twos are 2 apart.
+[[nodiscard]] long long step_of(std::span<const darkroom::NumberedFile> inputs);
+
+using FrameNumbers = std::set<long long>;
+/// First and last of each that follow one another.
+[[nodiscard]] std::vector<std::array<long long, 2>> ranges_of(const FrameNumbers& numbers);
+/// "0-6, 9"; "none".
+[[nodiscard]] std::string shown(const FrameNumbers& numbers);
+/// Of numbers that `typed`, the value of --frames, asks for and no input has.
+void warn_of_missing_inputs(std::string_view typed, const darkroom::FrameSet& frames,
+                            std::span<const darkroom::NumberedFile> inputs);
 /// A warning for each entry that stands where the picture is in another colour domain than it expects.
 void warn_of_what_is_misplaced(const darkroom::Plan& plan);
 /// By the CPU references alone, in the form that the target asks for. `histories`: of the frame before, then of this

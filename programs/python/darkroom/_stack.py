@@ -165,6 +165,7 @@ class Stack:
         frame = with_layers(frame, layers)
         runner = _device.runner(self._key, output, size)
         picture = develop_one(runner, self._look, frame)
+        warn(runner.misplaced() + self._look.values_without_effect())
         if not self._look.is_flat:
             warn(runner.left_out())
         return picture
@@ -195,6 +196,8 @@ class Stack:
                 under_way -= 1
             runner.submit(self._look, frame._described(described, index / fps, 1 / fps, index))
             under_way += 1
+            if index == 0:
+                warn(runner.misplaced() + self._look.values_without_effect())
             before = camera._matrices(width, height)
         for _ in range(under_way):
             yield runner.finish()

@@ -215,8 +215,10 @@ def write(path, picture) -> None:
     path, picture = os.fspath(path), as_array(picture, "picture")
     if path.endswith(".exr"):
         return write_frame(path, picture)
+    if not path.endswith(".png"):
+        raise Error(f"{path}: allowed are .png and .exr; `darkroom develop` writes other formats")
     is_picture = picture.ndim == 3 and picture.shape[2] in (3, 4) and picture.dtype in (numpy.uint8, numpy.uint16)
-    if not path.endswith(".png") or not is_picture:
+    if not is_picture:
         raise Error(f"{path}: {picture.dtype}, shape {picture.shape}: allowed are .png of uint8 or uint16 and .exr of floats")
     height, width, channels = picture.shape
     bits = 8 * picture.dtype.itemsize

@@ -36,7 +36,9 @@ std::uint64_t next_edition() {
     return ++last;
 }
 
-EditedLook edited(Look look) { return {std::move(look), next_edition()}; }
+EditedLook edited(Look look, std::vector<LookOverride> typed = {}) {
+    return {std::move(look), std::move(typed), next_edition()};
+}
 
 Data data_of(const py::object& object, std::string_view name) {
     if (py::isinstance<PyTable>(object)) return object.cast<const PyTable&>().data;
@@ -75,7 +77,9 @@ class Loader {
 };
 
 /// `keys` as find_target reads them; `shown` is put before them in errors.
-void set_values(Look& look, const std::string& entry, const std::string& shown, const Values& values) {
+/// What is set goes behind what was `typed` before.
+void set_values(Look& look, std::vector<LookOverride>& typed, const std::string& entry, const std::string& shown,
+                const Values& values) {
     Loader loader;
     std::vector<LookOverride> overrides;
     for (const auto& [key, value] : values) {
@@ -86,6 +90,10 @@ void set_values(Look& look, const std::string& entry, const std::string& shown, 
     must(override_look(look, overrides, loader.options(false, nullptr)));
     const std::vector<LookProblem> problems = problems_of(look, [&](std::size_t i) { return entry_names(look)[i]; });
     if (!problems.empty()) raise_user(fmt::format("{}: {}", look.shown_name, problems.front().text));
+    for (LookOverride& one : overrides) {
+        std::erase_if(typed, [&](const LookOverride& other) { return other.key == one.key; });
+        typed.push_back({std::move(one.key), {}, std::move(one.shown)});
+    }
 }
 
 LookEntry entry_named(const std::string& effect) {
@@ -119,15 +127,15 @@ std::string add_entry(EditedLook& edits, const std::string& effect, const std::s
     // From here on its name tells it from others: a stack that is made anew for each picture is not compiled anew.
     place->id = 0;
     std::string made = entry_names(look)[static_cast<std::size_t>(place - look.entries.begin())];
-    set_values(look, made, made, values);
-    edits = edited(std::move(look));
+    set_values(look, edits.typed, made, made, values);
+    edits = edited(std::move(look), std::move(edits.typed));
     return made;
 }
 
 void set_entry(EditedLook& edits, const std::string& entry, const Values& values) {
     Look look = edits.look;
-    set_values(look, entry, entry.empty() ? look.shown_name : entry, values);
-    edits = edited(std::move(look));
+    set_values(look, edits.typed, entry, entry.empty() ? look.shown_name : entry, values);
+    edits = edited(std::move(look), std::move(edits.typed));
 }
 
 LookEntry& entry_of_name(Look& look, const std::string& name) {
@@ -143,7 +151,7 @@ void remove_entry(EditedLook& edits, const std::string& name) {
         raise_user(fmt::format("{}: a flat table keeps its entries: switch '{}' off", look.shown_name, name));
     const LookEntry& entry = entry_of_name(look, name);
     look.entries.erase(look.entries.begin() + (&entry - look.entries.data()));
-    edits = edited(std::move(look));
+    edits = edited(std::move(look), std::move(edits.typed));
 }
 
 py::dict values_of(EditedLook& edits, const std::string& name) {
@@ -204,6 +212,8 @@ void add_looks(py::module_& module) {
         .def("remove", &remove_entry)
         .def("values", &values_of)
         .def("text", &look_text)
+        .def("values_without_effect",
+             [](const EditedLook& edits) { return values_without_effect(edits.look, edits.typed); })
         .def_property_readonly("is_flat", [](const EditedLook& edits) { return edits.look.is_flat; })
         .def_property_readonly("names", [](const EditedLook& edits) { return entry_names(edits.look); })
         .def("effect_of", [](EditedLook& edits, const std::string& name) {

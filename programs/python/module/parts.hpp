@@ -28,7 +28,8 @@ void add_compare(pybind11::module_& module);
 /// A look that is edited: an edit that fails changes nothing.
 struct EditedLook {
     Look look;
-    std::uint64_t edition = 0;  ///< no two contents have the same
+    std::vector<LookOverride> typed{};  ///< values that were set by hand
+    std::uint64_t edition = 0;          ///< no two contents have the same
 };
 
 /// A colour table, or a picture, as stacks read them.

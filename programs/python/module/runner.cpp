@@ -267,11 +267,11 @@ Plan Runner::plan() {
     return developer_ ? developer_->plan() : Plan();
 }
 
-std::vector<std::string> Runner::left_out() {
+std::vector<std::string> Runner::told(std::vector<std::string> Plan::*list) {
     const py::gil_scoped_release others_run;
     const std::lock_guard lock(mutex_);
     const Plan* const plan = composer_ ? composer_->current_plan() : nullptr;
-    return plan == nullptr ? std::vector<std::string>() : plan->left_out;
+    return plan == nullptr ? std::vector<std::string>() : plan->*list;
 }
 
 void add_runner(py::module_& module) {
@@ -310,7 +310,8 @@ void add_runner(py::module_& module) {
         .def("finish", &Runner::finish)
         .def("plan_text", [](Runner& runner) { return runner.plan().text(); })
         .def("plan_json", [](Runner& runner) { return runner.plan().json(); })
-        .def("left_out", &Runner::left_out);
+        .def("left_out", [](Runner& runner) { return runner.told(&Plan::left_out); })
+        .def("misplaced", [](Runner& runner) { return runner.told(&Plan::misplaced); });
 }
 
 }  // namespace darkroom::python

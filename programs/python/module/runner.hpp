@@ -41,8 +41,8 @@ class Runner {
     [[nodiscard]] pybind11::array finish();
     /// Of the last picture that was begun; empty before the first.
     [[nodiscard]] Plan plan();
-    /// Of its frame, too: what Plan::left_out tells.
-    [[nodiscard]] std::vector<std::string> left_out();
+    /// Of the plan of its last frame.
+    [[nodiscard]] std::vector<std::string> told(std::vector<std::string> Plan::*list);
 
   private:
     [[nodiscard]] Result<> follow(const EditedLook& edits);

@@ -108,6 +108,21 @@ class Arrays(Case):
         self.assertSame(darkroom.exposure(light().astype(numpy.float64), exposure=2), light() * numpy.float32(2))
         self.assertSame(darkroom.develop(light().astype(">f4")), expected)
 
+    def test_what_changes_nothing_or_stands_in_a_wrong_place_is_told(self):
+        wrong = darkroom.Stack().tonemap().color_grade().encode()
+        idle = darkroom.Stack.default().set("vignette", smoothness=0.4)
+        meant = darkroom.Stack.default().set("vignette", smoothness=0.4).set("vignette", enabled=True)
+        texts = []
+        for stack in (wrong, idle, meant):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                stack.develop(light())
+                list(stack.sequence([light()]))
+            texts.append([str(one.message) for one in caught])
+        place = "color_grade expects a picture that is scene_linear; this one is display_linear."
+        nothing = "vignette.smoothness changes nothing: vignette is off; vignette_enabled = true switches it on"
+        self.assertEqual(texts, [[place] * 2, [nothing] * 2, []])
+
     def test_16_bits_are_code_values(self):
         codes = darkroom.develop(light())
         wide = codes.astype(numpy.uint16) * numpy.uint16(257)
