@@ -16,8 +16,9 @@ namespace darkroom {
 namespace {
 
 constexpr std::array all_spaces{
-    LutSpace::Display, LutSpace::SceneLinear, LutSpace::Acescct,             LutSpace::Logc3, LutSpace::Slog3,
-    LutSpace::Logc4,   LutSpace::Vlog,        LutSpace::DavinciIntermediate, LutSpace::Linear};
+    LutSpace::Display, LutSpace::SceneLinear, LutSpace::Acescct, LutSpace::Logc3,
+    LutSpace::Slog3,   LutSpace::Logc4,       LutSpace::Vlog,    LutSpace::DavinciIntermediate,
+    LutSpace::Linear};
 constexpr std::array both{LutInterpolation::Tetrahedral, LutInterpolation::Trilinear};
 
 /// A cube whose entries are `make` of their places in [0, 1].
@@ -175,9 +176,9 @@ TEST(EffectLut, LogarithmsAreOfTheScenesLight) {
         composer.add(Lut{.space = space});
         const auto plan = composer.plan({.max_extent = {64, 64}});
         EXPECT_TRUE(plan) << plan.error().text;
-        return plan && std::ranges::find(plan->remarks,
+        return plan && std::ranges::find(plan->misplaced,
                                          "lut expects a picture that is scene_linear; this one is "
-                                         "display_linear.") != plan->remarks.end();
+                                         "display_linear.") != plan->misplaced.end();
     };
     for (const LutSpace space : std::span(all_spaces).subspan(1)) {
         EXPECT_TRUE(is_remarked(space, true)) << static_cast<int>(space);

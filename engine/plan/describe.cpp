@@ -45,8 +45,10 @@ void remark_domains(const Program& program, const FrameValues& values, const Com
         const EffectInfo& info = *entries[i]->info;
         const Domains accepts = info.accepts_now == nullptr ? info.accepts : info.accepts_now(values.words(i));
         if (program.is_left_out[i] || !entries[i]->desc.enabled || accepts.contains(domain)) continue;
-        plan.misplaced.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
-                                             accepted_domains(accepts), name_of(domain)));
+        // The interface's own chain stands where it stands.
+        std::vector<std::string>& list = info.flat.is_of_ui() ? plan.remarks : plan.misplaced;
+        list.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
+                                   accepted_domains(accepts), name_of(domain)));
     }
     if (!desc.target_color && values.finish().kind == Finish::EncodeSrgb)
         plan.remarks.push_back(fmt::format(

@@ -81,6 +81,7 @@ NONE = {
     "seconds_between_frames": "the host's own arithmetic",
     "KernelStatistics::value": "the host's own search in a list",
     "Plan::rounds": "one more than the largest round of the plan as JSON",
+    "values_without_effect": "warnings of programs that take values from people",
     "find_entry": "a look is opaque in C: darkroom_look_override changes what it holds",
 }
 

@@ -145,7 +145,7 @@ TEST_F(CliRenderEffects, FogLeavesTheSkyAlone) {
     const std::string sky = "[post_process]\nfog_start = 0.5\nfog_end = 2\nfog_color = [0.5, 0.25, 0.75]\n";
     std::string scene = square_scene(sky, "color = [0.5, 0.5, 0.5]");
     scene.replace(scene.find("background = [0, 0, 0]"), 22, "background = [0.2, 0.3, 0.4]");
-    const Picture clear = rendered(scene), fogged = rendered(scene, {"--fog-enabled", "on"});
+    const Picture clear = rendered(scene, {"--no-fog"}), fogged = rendered(scene, {"--fog-enabled", "on"});
     const Picture covered = rendered(scene, {"--fog-enabled", "on", "--fog-sky", "on"});
     EXPECT_GT(code_of(clear, 4, 4), 40) << "there is a sky to be seen";
     for (std::uint32_t y = 0; y < height; ++y)

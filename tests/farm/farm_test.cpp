@@ -148,7 +148,7 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
                         "none: no such folder, nothing can be written there; --mkdir makes it");
     expect_farm_refuses("slurm 'shot.####.exr' -o -", 1, "-o -: a farm writes files");
     expect_farm_refuses("slurm 'shot.####.exr' -o a.png", 1,
-                        "-o a.png: expected a folder, or a name with %04d or ####");
+                        "-o a.png: expected a folder (--mkdir makes a new one), or a name with %04d or ####");
     expect_farm_refuses("task 'shot.####.exr' -o out/", 1, "farm task: --frames A-B is needed");
     write("scene.toml", "[scene]\n");
     expect_farm_refuses("slurm scene.toml --frames 0-1999 --chunk 1 -o 'out/a.##.png'", 1,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <darkroom/look.hpp>
+#include <iterator>
 
 #include "core/caught.hpp"
 #include "core/text/param_text.hpp"
@@ -123,8 +124,11 @@ std::vector<std::string> values_without_effect(const Look& look, std::span<const
     std::vector<std::string> out;
     if (!look.is_enabled) return out;
     Look own = look;
-    tell_of_idle_values(own, given_by_hand(own, typed), out);
-    tell_of_idle_values(own, given_by_file(own), out);
+    const std::vector<GivenValue> by_hand = given_by_hand(own, typed);
+    std::vector<GivenValue> by_file = given_by_file(own);
+    std::ranges::copy_if(by_hand, std::back_inserter(by_file), &GivenValue::says_what_is_on);
+    tell_of_idle_values(own, by_hand, out);
+    tell_of_idle_values(own, by_file, out);
     return out;
 }
 
