@@ -33,9 +33,11 @@ vec4 upscale_at(ivec2 texel, ivec2 limit) { return sanitize(load(upscale_picture
 
 vec4 shade(Pixel pixel) {
     ivec2 small = size(upscale_picture), large = output_size(), limit = small - 1;
-    if (small == large) return load(upscale_picture, pixel.texel);
+    // Asked of the pixel, as in bloom_between_cells.
+    ivec2 middle = 2 * pixel.texel + 1;
+    if (middle * small == middle * large) return load(upscale_picture, pixel.texel);
     // The place among the pixels in whole numbers, since parts of a pixel far from 0 would be rounded.
-    ivec2 above = (2 * pixel.texel + 1) * small - large, below = 2 * large;
+    ivec2 above = middle * small - large, below = 2 * large;
     ivec2 base = ivec2(floor(vec2(above) / vec2(below)));
     ivec2 rest = above - base * below;
     ivec2 off = ivec2(greaterThanEqual(rest, below)) - ivec2(lessThan(rest, ivec2(0)));

@@ -14,7 +14,8 @@ vec4 shade(Pixel pixel) {
     bool is_down = custom[0].y > 0.0;
     float place = float(is_down ? pixel.texel.y : pixel.texel.x);
     float last = float((is_down ? pixel.size.y : pixel.size.x) - 1);
-    int pairs = int(custom[0].w);
+    // No place lies below 0; see bloom_between_cells for why the end is asked of the pixel, too.
+    int pairs = int(custom[0].w + min(place, 0.0));
     for (int i = 0; i < pairs; ++i) {
         vec2 tap = (i & 1) == 0 ? custom[1 + i / 2].xy : custom[1 + i / 2].zw;
         vec2 reach = custom[0].xy * tap.x;
